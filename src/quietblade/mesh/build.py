@@ -1,0 +1,243 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""From a blade to a conforming second-order mesh, by gmsh.
+
+One layer of hexahedra in the film, pyramids on its faces, tetrahedra elsewhere.
+"""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+import gmsh
+import numpy as np
+
+from quietblade.errors import MeshError
+from quietblade.geometry import Blade
+from quietblade.mesh.cad import Patch, Solids, build_solids
+from quietblade.mesh.model import CellBlock, Mesh
+from quietblade.mesh.quality import poor_cell_notices, region_quality
+from quietblade.typing import FloatArray, IntArray
+
+# gmsh's element types: name, nodes, and VTK's node order from gmsh's
+_KINDS = {
+    11: ("tetra10", (0, 1, 2, 3, 4, 5, 6, 7, 9, 8)),
+    17: ("hexahedron20", (*range(8), 8, 11, 13, 9, 16, 18, 19, 17, 10, 12, 14, 15)),
+    19: ("pyramid13", (0, 1, 2, 3, 4, 5, 8, 10, 6, 7, 9, 11, 12)),
+}
+_TRIANGLE6 = 9
+
+
+@dataclass(frozen=True)
+class MeshSpec:
+    """What the mesh shall be.
+
+    Attributes
+    ----------
+    size : float
+        Edge length of the cells on the blade and in the film [m].
+    centre : (3,) tuple of float
+        Centre of the water sphere [m].
+    radius : float
+        Its radius [m].
+    patch : Patch
+        Excited part of the blade's surface.
+    water_size : float or None
+        Edge length at the sphere [m]; a quarter of the radius if None.
+    """
+
+    size: float
+    centre: tuple[float, float, float]
+    radius: float
+    patch: Patch
+    water_size: float | None = None
+
+
+def build_mesh(blade: Blade, spec: MeshSpec) -> Mesh:
+    """Mesh the blade, its film and the water around it.
+
+    Parameters
+    ----------
+    blade : Blade
+    spec : MeshSpec
+
+    Returns
+    -------
+    Mesh
+
+    Raises
+    ------
+    MeshError
+        The volumes cannot be made or meshed, or a cell is inverted (with the place).
+    """
+    centre = np.array(spec.centre)
+    with _gmsh_session():
+        try:
+            solids = build_solids(blade, centre, spec.radius, spec.patch)
+            _set_film_layer(blade, solids, spec.size)
+            _set_sizes(solids, spec)
+            gmsh.model.mesh.generate(3)
+            gmsh.model.mesh.setOrder(2)
+        except MeshError:
+            raise
+        except Exception as error:  # gmsh raises bare Exception
+            raise MeshError(
+                f"gmsh could not mesh the blade: {error}. Try another mesh size, a thinner film "
+                "or a smaller film."
+            ) from error
+        return _collect(blade, solids, spec, centre)
+
+
+@contextmanager
+def _gmsh_session() -> Iterator[None]:
+    """Use gmsh quietly and reproducibly, and leave nothing behind."""
+    gmsh.initialize(interruptible=False)
+    try:
+        gmsh.model.add("blade")
+        for option, value in {
+            "General.Terminal": 0,
+            "General.NumThreads": 1,  # the same mesh on every machine
+            "Mesh.SecondOrderIncomplete": 1,
+            "Mesh.MeshSizeExtendFromBoundary": 0,
+            "Mesh.MeshSizeFromPoints": 0,
+            "Mesh.MeshSizeFromCurvature": 0,
+        }.items():
+            gmsh.option.setNumber(option, value)
+        yield
+    finally:
+        gmsh.finalize()
+
+
+def _faces_of(volume: int) -> list[int]:
+    return [tag for _, tag in gmsh.model.getBoundary([(3, volume)], oriented=False)]
+
+
+def _set_film_layer(blade: Blade, solids: Solids, size: float) -> None:
+    """Prescribe one layer of hexahedra: cells of about ``size`` along span and chord."""
+    if solids.film is None or blade.film is None:
+        return
+    mesh = gmsh.model.mesh
+    faces = _faces_of(solids.film)
+    if len(faces) != 6:
+        raise MeshError(f"the film has {len(faces)} faces where a layer of hexahedra needs 6")
+    s = np.linspace(*blade.film.span, 11)
+    width = float(np.mean(blade.chord(s))) * (blade.film.chord[1] - blade.film.chord[0])
+    length = blade.span * (blade.film.span[1] - blade.film.span[0])
+    cells = {"span": max(2, round(length / size)), "chord": max(3, round(width / size))}
+    curves = gmsh.model.getBoundary([(2, f) for f in faces], combined=False, oriented=False)
+    for curve in {tag for _, tag in curves}:
+        first, last = (
+            blade.locate(np.array(gmsh.model.getValue(0, point, [])))
+            for _, point in gmsh.model.getBoundary([(1, curve)])
+        )
+        ds, dxi = abs(first[0] - last[0]), abs(first[1] - last[1])
+        along = "span" if ds * blade.span > blade.film.thickness else "chord"
+        across = along == "chord" and dxi < 0.5 * (blade.film.chord[1] - blade.film.chord[0])
+        mesh.setTransfiniteCurve(curve, 2 if across else cells[along] + 1)
+    for face in faces:
+        mesh.setTransfiniteSurface(face)
+        mesh.setRecombine(2, face)
+    mesh.setTransfiniteVolume(solids.film)
+
+
+def _wetted_faces(solids: Solids) -> list[int]:
+    water = set(_faces_of(solids.water))
+    return [face for face in _faces_of(solids.blade) if face in water]
+
+
+def _set_sizes(solids: Solids, spec: MeshSpec) -> None:
+    """Cells of one size on the blade, growing linearly towards the sphere."""
+    mesh = gmsh.model.mesh
+    distance, growth = mesh.field.add("Distance"), mesh.field.add("Threshold")
+    wetted = _wetted_faces(solids)
+    mesh.field.setNumbers(distance, "SurfacesList", wetted)
+    mesh.field.setNumber(distance, "Sampling", 60)
+    mesh.field.setNumber(growth, "InField", distance)
+    limits = {
+        "SizeMin": spec.size,
+        "SizeMax": spec.water_size or 0.25 * spec.radius,
+        "DistMin": 0.5 * spec.size,
+        "DistMax": 0.6 * spec.radius,
+    }
+    for name, value in limits.items():
+        mesh.field.setNumber(growth, name, value)
+    mesh.field.setAsBackgroundMesh(growth)
+    side_faces = [f for f in wetted if _carries(f, solids.outlines)]
+    if len(side_faces) != 1:
+        raise MeshError("the excited patch does not lie on one face of the blade")
+    mesh.embed(1, solids.outlines, 2, side_faces[0])
+
+
+def _carries(face: int, curves: list[int]) -> bool:
+    """Whether the middles of all curves lie on the face."""
+    for curve in curves:
+        (low,), (high,) = gmsh.model.getParametrizationBounds(1, curve)
+        middle = gmsh.model.getValue(1, curve, [0.5 * (low + high)])
+        closest, _ = gmsh.model.getClosestPoint(2, face, middle)
+        size = gmsh.model.occ.getMass(1, curve)
+        if np.linalg.norm(np.array(closest) - middle) > 1e-3 * size:
+            return False
+    return True
+
+
+def _collect(blade: Blade, solids: Solids, spec: MeshSpec, centre: FloatArray) -> Mesh:
+    """Read the mesh out of gmsh, with nodes numbered from zero."""
+    tags, coordinates, _ = gmsh.model.mesh.getNodes()
+    position = np.zeros((int(tags.max()) + 1, 3))
+    position[tags] = coordinates.reshape(-1, 3)
+    raw = {name: _blocks(volume) for name, volume in solids.volumes().items()}
+    used = np.unique(np.concatenate([c.ravel() for b in raw.values() for _, c in b]))
+    number = np.full(len(position), -1, dtype=np.int64)
+    number[used] = np.arange(len(used))
+    nodes = position[used]
+    cells = {
+        name: tuple(CellBlock(kind, number[nodes_]) for kind, nodes_ in blocks)
+        for name, blocks in raw.items()
+    }
+    quality = {
+        name: region_quality(name, volume, position) for name, volume in solids.volumes().items()
+    }
+    faces = _named_faces(blade, solids, spec.patch, nodes, number)
+    notices = poor_cell_notices(quality)
+    return Mesh(nodes, cells, faces, centre, spec.radius, quality, notices)
+
+
+def _blocks(volume: int) -> list[tuple[str, IntArray]]:
+    blocks = []
+    for kind, _, nodes in zip(*gmsh.model.mesh.getElements(3, volume), strict=True):
+        if kind not in _KINDS:
+            raise MeshError(f"gmsh made cells of an unexpected type {kind}")
+        name, order = _KINDS[kind]
+        blocks.append((name, nodes.astype(np.int64).reshape(-1, len(order))[:, order]))
+    return blocks
+
+
+def _triangles(face: int, number: IntArray) -> IntArray:
+    kinds, _, nodes = gmsh.model.mesh.getElements(2, face)
+    if list(kinds) != [_TRIANGLE6]:
+        raise MeshError("a wetted face is not meshed by six-node triangles")
+    return number[nodes[0].astype(np.int64).reshape(-1, 6)]
+
+
+def _named_faces(
+    blade: Blade, solids: Solids, patch: Patch, nodes: FloatArray, number: IntArray
+) -> dict[str, IntArray]:
+    """Triangles of each boundary; those of the blade point out of the blade."""
+    wetted = _wetted_faces(solids)
+    outer = [face for face in _faces_of(solids.water) if face not in wetted]
+    triangles = np.concatenate([_triangles(face, number) for face in wetted])
+    at_root = np.abs(nodes[triangles, 2] - blade.hub_radius).max(axis=1) < 1e-9 * blade.span
+    middle = nodes[triangles[:, 3:]].mean(axis=1)
+    s, xi, eta = blade.locate(middle)
+    mean_line = blade.family.camber_line(xi, blade.camber(s))[0]
+    excited = (
+        (s > patch.span[0]) & (s < patch.span[1])
+        & (xi > patch.chord[0]) & (xi < patch.chord[1])
+        & (patch.side * (eta - mean_line) > 0.0)
+        & ~at_root
+    )  # fmt: skip
+    return {
+        "wet": triangles[~at_root & ~excited],
+        "excited": triangles[excited],
+        "root": triangles[at_root],
+        "outer": np.concatenate([_triangles(face, number) for face in outer]),
+    }

@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Shape figures of cells; inverted cells are refused."""
+
+from collections.abc import Mapping
+
+import gmsh
+import numpy as np
+
+from quietblade.errors import MeshError, Notice
+from quietblade.mesh.model import Quality
+from quietblade.typing import FloatArray, IntArray
+
+POOR_SHAPE = 1e-3
+"""Signed inverse condition number below which a notice is given."""
+
+POOR_JACOBIAN = 0.05
+"""Ratio of least to mean Jacobian below which a notice is given."""
+
+
+def region_quality(name: str, volume: int, position: FloatArray) -> Quality:
+    """Quality of one volume of the current gmsh model.
+
+    Parameters
+    ----------
+    name : str
+        Region, for the message.
+    volume : int
+        gmsh tag.
+    position : (n, 3) float array
+        Node positions by gmsh tag [m].
+
+    Raises
+    ------
+    MeshError
+        A Jacobian determinant is not positive at a quadrature point.
+    """
+    shape, ratio = [], []
+    mesh = gmsh.model.mesh
+    for kind, elements, nodes in zip(*mesh.getElements(3, volume), strict=True):
+        points, _ = mesh.getIntegrationPoints(kind, "Gauss4")
+        _, determinants, _ = mesh.getJacobians(kind, points, volume)
+        det = determinants.reshape(len(elements), -1)
+        _refuse_inverted(name, det, nodes.reshape(len(elements), -1).astype(np.int64), position)
+        ratio.append(det.min(axis=1) / det.mean(axis=1))
+        shape.append(mesh.getElementQualities(elements, "minSICN"))
+    shapes = np.concatenate(shape)
+    return Quality(float(shapes.min()), float(shapes.mean()), float(np.concatenate(ratio).min()))
+
+
+def tetrahedron_jacobians(nodes: FloatArray, connectivity: IntArray) -> FloatArray:
+    """Jacobian determinants of ten-node tetrahedra at four Gauss points and the four corners.
+
+    Parameters
+    ----------
+    nodes : (n, 3) float array
+        Node positions [m].
+    connectivity : (m, 10) int array
+        VTK node order.
+
+    Returns
+    -------
+    (m, 8) float array
+        Six times the local volume [m^3].
+    """
+    a, b = 0.58541019662496852, 0.13819660112501050
+    points = np.array([np.roll([a, b, b, b], k) for k in range(4)] + list(np.eye(4)))
+    derivatives = np.array([_tetra10_derivatives(p) for p in points])  # (q, 10, 3)
+    tangents = np.einsum("qka,mki->mqai", derivatives, nodes[connectivity])
+    return np.asarray(np.linalg.det(tangents))
+
+
+def _tetra10_derivatives(barycentric: FloatArray) -> FloatArray:
+    """Derivatives of the ten shape functions along the three local axes, (10, 3)."""
+    gradients = np.array([[-1.0, -1, -1], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+    edges = ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))
+    corner = [(4 * lam - 1) * g for lam, g in zip(barycentric, gradients, strict=True)]
+    middle = [
+        4 * (barycentric[i] * gradients[j] + barycentric[j] * gradients[i]) for i, j in edges
+    ]
+    return np.array(corner + middle)
+
+
+def _refuse_inverted(
+    name: str, determinants: FloatArray, cells: IntArray, position: FloatArray
+) -> None:
+    worst = int(determinants.min(axis=1).argmin())
+    if determinants[worst].min() <= 0.0:
+        x, y, z = position[cells[worst]].mean(axis=0)
+        raise MeshError(
+            f"a cell of the {name} is inverted at x = {x:.4f} m, y = {y:.4f} m, z = {z:.4f} m. "
+            "Use a smaller mesh size, a thinner film or more cover above it."
+        )
+
+
+def poor_cell_notices(quality: Mapping[str, Quality]) -> tuple[Notice, ...]:
+    """Notices for regions whose worst cell is poor."""
+    notices = []
+    for name, figures in quality.items():
+        remedy = "Results near that cell are less accurate; try another mesh size"
+        if figures.worst < POOR_SHAPE:
+            notices.append(
+                Notice(f"mesh of the {name}", "flat cell", figures.worst, POOR_SHAPE, remedy)
+            )
+        if figures.least_jacobian < POOR_JACOBIAN:
+            notices.append(
+                Notice(
+                    f"mesh of the {name}", "strongly curved cell",
+                    figures.least_jacobian, POOR_JACOBIAN, remedy,
+                )
+            )  # fmt: skip
+    return tuple(notices)
