@@ -81,8 +81,9 @@ def build_mesh(blade: Blade, spec: MeshSpec) -> Mesh:
             raise
         except Exception as error:  # gmsh raises bare Exception
             raise MeshError(
-                f"gmsh could not mesh the blade: {error}. Try another mesh size, a thinner film "
-                "or a smaller film."
+                f"gmsh could not mesh the blade with cells of {spec.size:g} m: {error}. Cells must "
+                "be small enough that the faces of the blade, drawn by straight edges, stay clear "
+                "of the film: use a smaller mesh size, or a thinner or smaller film."
             ) from error
         return _collect(blade, solids, spec, centre)
 

@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Water mesh moved to the deformed blade by a pseudo-material (theory: S2-30).
+
+A fictitious elastic solid fills the water.  Its stiffness falls with the cube of the cell size, so
+that small cells beside the blade move and turn almost rigidly and large cells far away deform.
+"""
+
+from dataclasses import dataclass
+
+import ngsolve as ngs
+import numpy as np
+
+from quietblade.errors import MeshError, Notice
+from quietblade.linalg import make_solver
+from quietblade.mesh.assembly import csr_of
+from quietblade.mesh.model import INTERFACE, Mesh
+from quietblade.mesh.quality import POOR_JACOBIAN, tetrahedron_jacobians
+from quietblade.typing import FloatArray
+
+_STEPS = (1, 2, 4, 8)  # tried in turn until no cell is inverted
+
+
+@dataclass(frozen=True)
+class MeshMotion:
+    """Displacement of every node from C0 to C1.
+
+    Attributes
+    ----------
+    displacement : (n, 3) float array
+        At the nodes of the mesh [m]: the blade's own in the blade, the pseudo-material's in the
+        water, zero on the sphere.
+    least_jacobian : float
+        Least ratio of a water cell's Jacobian determinant on C1 to its mean in the cell.
+    volume_ratio : (2,) tuple of float
+        Least and largest volume of a water cell on C1 over that on C0.
+    gap : float
+        Least distance of the deformed blade to the sphere [m].
+    steps : int
+        Steps in which the mesh was moved.
+    notices : tuple of Notice
+    """
+
+    displacement: FloatArray
+    least_jacobian: float
+    volume_ratio: tuple[float, float]
+    gap: float
+    steps: int
+    notices: tuple[Notice, ...] = ()
+
+
+def solve_mesh_motion(mesh: Mesh, blade_displacement: FloatArray, minimum_gap: float) -> MeshMotion:
+    """Move the water mesh with the blade's surface.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    blade_displacement : (n, 3) float array
+        Displacement at the nodes of the mesh [m]; only the blade's nodes are read.
+    minimum_gap : float
+        Least allowed distance from the deformed blade to the outer sphere [m].
+
+    Returns
+    -------
+    MeshMotion
+
+    Raises
+    ------
+    MeshError
+        The blade comes too close to the sphere, or a water cell stays inverted.
+    """
+    gap = sphere_gap(mesh, blade_displacement)
+    if gap < minimum_gap:
+        raise MeshError(
+            f"the deformed blade comes within {gap:.3f} m of the outer sphere where at least "
+            f"{minimum_gap:.3f} m are wanted; use a larger sphere radius or move its centre"
+        )
+    connectivity = np.concatenate([block.connectivity for block in mesh.cells["water"]])
+    before = tetrahedron_jacobians(mesh.nodes, connectivity)
+    for steps in _STEPS:
+        moved = _move(mesh, blade_displacement, steps)
+        after = tetrahedron_jacobians(mesh.nodes + moved, connectivity)
+        if after.min() > 0.0:
+            least = float((after.min(axis=1) / after.mean(axis=1)).min())
+            ratio = after.mean(axis=1) / before.mean(axis=1)
+            bounds = (float(ratio.min()), float(ratio.max()))
+            return MeshMotion(moved, least, bounds, gap, steps, _notices(least))
+    worst = connectivity[after.min(axis=1).argmin()]
+    x, y, z = (mesh.nodes + moved)[worst].mean(axis=0)
+    raise MeshError(
+        f"a water cell is inverted on C1 at x = {x:.3f} m, y = {y:.3f} m, z = {z:.3f} m although "
+        f"the mesh was moved in {_STEPS[-1]} steps; use a smaller mesh size or a larger sphere"
+    )
+
+
+def sphere_gap(mesh: Mesh, displacement: FloatArray) -> float:
+    """Least distance of the displaced blade's nodes to the outer sphere [m]."""
+    blade = np.unique(np.concatenate([mesh.interface.ravel(), mesh.faces["root"].ravel()]))
+    arm = (mesh.nodes + displacement)[blade] - mesh.centre
+    return float(mesh.radius - np.linalg.norm(arm, axis=1).max())
+
+
+def _notices(least: float) -> tuple[Notice, ...]:
+    if least >= POOR_JACOBIAN:
+        return ()
+    remedy = "Peak levels on C1 may be inaccurate; try a smaller mesh size"
+    return (Notice("water mesh on C1", "strongly curved cell", least, POOR_JACOBIAN, remedy),)
+
+
+def _move(mesh: Mesh, blade_displacement: FloatArray, steps: int) -> FloatArray:
+    """Nodal displacement in ``steps`` increments, the pseudo-material following the mesh."""
+    basis, fem = mesh.basis, mesh.fem
+    space = ngs.VectorH1(fem, order=2, dirichlet=f"{INTERFACE}|root|outer")
+    water = np.array(space.GetDofs(fem.Materials("water")))
+    free = np.flatnonzero(water & np.array(space.FreeDofs()))
+    used = np.zeros(len(mesh.nodes), dtype=bool)
+    used[basis.nodes_of("blade|film" if "film" in mesh.cells else "blade")] = True
+    blade = np.where(used[:, None], blade_displacement, 0.0)
+    increment = basis.to_dofs(blade) / steps
+    increment[free] = 0.0
+    total = np.zeros_like(increment)
+    for _ in range(steps):
+        matrix = csr_of(_pseudo_material(space, total))
+        stiffness, coupled = matrix[free][:, free], matrix[free] @ increment
+        step = increment.copy()
+        step[free] = make_solver().analyse(stiffness).factor(stiffness).solve(-coupled)
+        total += step
+    return np.asarray(basis.to_values(total))
+
+
+def _pseudo_material(space: ngs.VectorH1, moved: FloatArray) -> ngs.BilinearForm:
+    deformation = ngs.GridFunction(ngs.VectorH1(space.mesh, order=2))
+    deformation.vec.FV().NumPy()[:] = moved
+    u, v = space.TnT()
+    size = ngs.specialcf.mesh_size
+    strain = ngs.Sym(ngs.Grad(u))
+    density = 2 * ngs.InnerProduct(strain, ngs.Sym(ngs.Grad(v))) + ngs.div(u) * ngs.div(v)
+    form = ngs.BilinearForm(space, symmetric=False, check_unused=False)
+    form += density / size**3 * ngs.dx("water", deformation=deformation)
+    with ngs.TaskManager():
+        form.Assemble()
+    return form
