@@ -3,9 +3,15 @@ from math import factorial
 
 import numpy as np
 import pytest
+from scipy.spatial import cKDTree
 
 from quietblade.errors import MeshError
-from quietblade.mesh.surface import SurfaceQuadrature, shape_derivatives, triangle_rule
+from quietblade.mesh.surface import (
+    SurfaceQuadrature,
+    shape_derivatives,
+    shape_functions,
+    triangle_rule,
+)
 
 RNG = np.random.default_rng(20240501)
 
@@ -175,6 +181,24 @@ def test_interpolation_reproduces_linear_fields_and_the_surface() -> None:
     np.testing.assert_allclose(
         surface.interpolation(surface.points) @ surface.points, surface.points, atol=1e-12
     )
+
+
+def test_closest_points_against_a_fine_sampling() -> None:
+    """Also where mid-edge nodes sit at a quarter of the edge and the surface is thin."""
+    uv, triangles = grid(3, 3)
+    x = np.sin(0.5 * np.pi * uv[:, 0]) ** 2  # clustered at both ends
+    top = np.stack([x, uv[:, 1], 0.02 + 0.1 * x * (1 - x)], axis=1)
+    thin = SurfaceQuadrature(
+        np.concatenate([top, top * [1, 1, -1]]), np.concatenate([triangles, triangles + len(top)])
+    )
+    points = RNG.random((300, 3)) * [1.2, 1.2, 0.2] - [0.1, 0.1, 0.1]
+    a, b = (q.ravel() for q in np.meshgrid(np.linspace(0, 1, 81), np.linspace(0, 1, 81)))
+    fine = np.stack([a, b], axis=1)[a + b <= 1 + 1e-12]
+    samples = shape_functions(fine) @ thin.points[thin.triangles]
+    reached = cKDTree(samples.reshape(-1, 3)).query(points)[0]
+    distance = thin.locate(points).distance
+    assert np.all(distance <= reached + 1e-12)
+    np.testing.assert_allclose(distance, reached, atol=5e-3)
 
 
 def test_points_beyond_the_rim_go_to_the_rim() -> None:

@@ -10,6 +10,7 @@ from functools import cached_property
 
 import ngsolve as ngs
 import numpy as np
+from scipy.sparse import coo_array, csr_matrix
 from scipy.spatial import cKDTree
 
 from quietblade.errors import MeshError
@@ -93,6 +94,19 @@ class NodalBasis:
             blocks[self._ends].mean(axis=1) + _EDGE_BUBBLE_AT_MIDPOINT * edge
         )
         return values[:, 0] if values.shape[1] == 1 else values
+
+    @cached_property
+    def interpolation(self) -> csr_matrix:
+        """`to_dofs` of a scalar as a matrix, (ndof, n)."""
+        edges = self.fem.nv + np.arange(len(self._ends))
+        # vertex unknowns are values; an edge unknown is 8 (mean of the ends - value in the middle)
+        rows = np.concatenate([self._vertices, edges, edges, edges])
+        columns = [self._vertices, self._ends[:, 0], self._ends[:, 1], self._edge_nodes]
+        bubble = 1.0 / _EDGE_BUBBLE_AT_MIDPOINT
+        counts = [len(self._vertices), *3 * [len(edges)]]
+        weights = np.repeat([1.0, -0.5 * bubble, -0.5 * bubble, bubble], counts)
+        shape = (self.ndof, len(self.points))
+        return csr_matrix(coo_array((weights, (rows, np.concatenate(columns))), shape=shape))
 
     def nodes_of(self, region: str, codimension: int = 0) -> IntArray:
         """Sorted node numbers of a material (codimension 0) or a boundary (1), by name pattern.

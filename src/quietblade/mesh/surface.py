@@ -18,8 +18,8 @@ from quietblade.typing import FloatArray, IntArray
 
 _FLIPPED = (0, 2, 1, 5, 4, 3)
 _EDGES = ((0, 1, 3), (1, 2, 4), (2, 0, 5))
-_STEPS = 12
-_CONVERGED = 1e-14  # of the reference triangle
+_STEPS = 25
+_CONVERGED = 1e-12  # of the reference triangle
 
 
 def shape_functions(uv: FloatArray) -> FloatArray:
@@ -78,8 +78,7 @@ def triangle_rule() -> tuple[FloatArray, FloatArray]:
     ):
         points += [(a, a), (1.0 - 2.0 * a, a), (a, 1.0 - 2.0 * a)]
         weights += 3 * [weight]
-    a, b = 0.053145049844817, 0.310352451033784
-    c = 1.0 - a - b
+    a, b, c = 0.053145049844817, 0.310352451033784, 0.636502499121399
     points += [(a, b), (b, a), (a, c), (c, a), (b, c), (c, b)]
     weights += 6 * [0.082851075618374]
     return np.array(points), 0.5 * np.array(weights) / sum(weights)
@@ -164,10 +163,9 @@ class SurfaceQuadrature:
         return np.asarray(_WEIGHTS[:, None] * normal)
 
     def nodal_areas(self) -> FloatArray:
-        """Share of each node in the undeformed area [m^2], shape (N,); positive on the surface.
+        """Share of each node in the undeformed area [m^2], (N,); positive on the surface.
 
-        The integrals of the squared shape functions, scaled to each triangle's area (the plain
-        integrals vanish at the corners of a flat triangle).
+        From the squared shape functions (the plain ones integrate to 0 at flat corners).
         """
         area = np.linalg.norm(self.area_vectors(self.points), axis=-1)
         squares = np.einsum("nq,qa->na", area, self.shape**2)
@@ -180,9 +178,9 @@ class SurfaceQuadrature:
         """Matrix from nodal values to values at the quadrature points, (12 n, N)."""
         n, rule = len(self.triangles), len(_WEIGHTS)
         columns = np.repeat(self.triangles, rule, axis=0).ravel()
-        rows = np.repeat(np.arange(n * rule), 6)
+        places = (np.repeat(np.arange(n * rule), 6), columns)
         data = np.tile(self.shape, (n, 1)).ravel()
-        return csr_array((data, (rows, columns)), shape=(n * rule, len(self.points)))
+        return csr_array((data, places), shape=(n * rule, len(self.points)))
 
     def enclosed_volume(self) -> float:
         """Signed volume [m^3] that the surface encloses; positive if it is oriented outwards.
@@ -263,11 +261,9 @@ class SurfaceQuadrature:
             Rows sum to 1.
         """
         found = self.locate(points)
-        rows = np.repeat(np.arange(len(points)), 6)
-        columns = self.triangles[found.triangle].ravel()
-        return csr_array(
-            (found.weights.ravel(), (rows, columns)), shape=(len(points), len(self.points))
-        )
+        places = (np.repeat(np.arange(len(points)), 6), self.triangles[found.triangle].ravel())
+        shape = (len(points), len(self.points))
+        return csr_array((found.weights.ravel(), places), shape=shape)
 
     def _volumes(self, triangles: IntArray, centre: FloatArray) -> FloatArray:
         part = replace(self, triangles=triangles)
@@ -334,67 +330,70 @@ def _split(uv: FloatArray, times: int) -> FloatArray:
 
 _CORNERS = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
 _CELLS = _split(_CORNERS, 2)
-_SAMPLES = np.unique(_CELLS[:, :3].reshape(-1, 2), axis=0)
+_STARTS = _CELLS[:, :3].mean(axis=1)  # not on an edge, where the slope may vanish
+_EDGE_STARTS = np.linspace(0.1, 0.9, 5)[:, None]
 _SECOND_DERIVATIVES = np.array(
-    [[4.0, 4.0, 0.0, -8.0, 0.0, 0.0], [4.0, 0.0, 0.0, -4.0, 4.0, -4.0], [4.0, 0.0, 4.0, 0, 0, -8.0]]
+    [
+        [[4.0, 4.0, 0.0, -8.0, 0.0, 0.0], [4.0, 0.0, 0.0, -4.0, 4.0, -4.0]],
+        [[4.0, 0.0, 0.0, -4.0, 4.0, -4.0], [4.0, 0.0, 4.0, 0.0, 0.0, -8.0]],
+    ]
 )
 
 
-def _distance(nodes: FloatArray, points: FloatArray, uv: FloatArray) -> FloatArray:
-    gap = np.einsum("pa,pak->pk", shape_functions(uv), nodes) - points
-    return np.asarray(np.linalg.norm(gap, axis=1))
+def _gap(nodes: FloatArray, points: FloatArray, uv: FloatArray) -> FloatArray:
+    return np.asarray(np.einsum("pa,pak->pk", shape_functions(uv), nodes) - points)
 
 
 def _closest_inside(nodes: FloatArray, points: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Stationary point of the distance inside each triangle (P, 6, 3).
-
-    Newton from the best sample, Gauss-Newton where the distance is not convex.
-
-    Returns
-    -------
-    uv : ndarray, shape (P, 2)
-    distance : ndarray, shape (P,)
-        Infinite where the stationary point is outside the triangle.
-    """
-    samples = np.einsum("sa,pak->psk", shape_functions(_SAMPLES), nodes)
-    start = np.argmin(np.sum((samples - points[:, None]) ** 2, axis=-1), axis=1)
-    uv = _SAMPLES[start]
-    second = np.einsum("ea,pak->pek", _SECOND_DERIVATIVES, nodes)
-    for _ in range(_STEPS):
-        gap = np.einsum("pa,pak->pk", shape_functions(uv), nodes) - points
-        tangents = np.einsum("pda,pak->pdk", shape_derivatives(uv), nodes)
-        g, h = np.einsum("pdk,pk->dp", tangents, gap)
-        normal = np.stack(
-            [np.sum(tangents[:, i] * tangents[:, j], axis=1) for i, j in ((0, 0), (0, 1), (1, 1))]
-        )
-        full = normal + np.einsum("pek,pk->ep", second, gap)
-        convex = (full[0] > 0.0) & (full[0] * full[2] - full[1] ** 2 > 1e-6 * full[0] * full[2])
-        a, b, c = np.where(convex, full, normal)
-        determinant = np.maximum(a * c - b * b, 1e-30 * a * c)
-        step = np.stack([c * g - b * h, a * h - b * g], axis=1) / determinant[:, None]
-        uv = np.clip(uv - step, -0.5, 1.5)
-        if np.max(np.abs(step), initial=0.0) < _CONVERGED:
-            break
-    inside = np.min([uv[:, 0], uv[:, 1], 1.0 - uv.sum(axis=1)], axis=0) >= 0.0
-    return uv, np.where(inside, _distance(nodes, points, uv), np.inf)
+    """Closest points (P, 2) in triangles (P, 6, 3) as seen from inside, and distances (P,)."""
+    uv = _descend(nodes, points, np.zeros(2), np.eye(2), _STARTS)
+    return uv, np.linalg.norm(_gap(nodes, points, uv), axis=1)
 
 
 def _closest_on_edges(nodes: FloatArray, points: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Closest points (P, 2) on the rims of triangles (P, 6, 3), and their distances (P,)."""
+    """Closest points (P, 2) on the rims of triangles (P, 6, 3), and distances (P,)."""
     best_uv, best = np.zeros((len(points), 2)), np.full(len(points), np.inf)
     for i, j, _ in _EDGES:
-        start, direction = _CORNERS[i], _CORNERS[j] - _CORNERS[i]
-        t = np.full(len(points), 0.5)
-        for _ in range(_STEPS):
-            uv = start + t[:, None] * direction
-            gap = np.einsum("pa,pak->pk", shape_functions(uv), nodes) - points
-            slope = np.einsum("d,pda,pak->pk", direction, shape_derivatives(uv), nodes)
-            step = np.sum(gap * slope, axis=1) / np.sum(slope * slope, axis=1)
-            before, t = t, np.clip(t - step, 0.0, 1.0)
-            if np.max(np.abs(t - before), initial=0.0) < _CONVERGED:
-                break
-        uv = start + t[:, None] * direction
-        distance = _distance(nodes, points, uv)
+        along = (_CORNERS[j] - _CORNERS[i])[None]
+        uv = _descend(nodes, points, _CORNERS[i], along, _EDGE_STARTS)
+        distance = np.linalg.norm(_gap(nodes, points, uv), axis=1)
         closer = distance < best
         best_uv[closer], best[closer] = uv[closer], distance[closer]
     return best_uv, best
+
+
+def _descend(
+    nodes: FloatArray, points: FloatArray, origin: FloatArray, axes: FloatArray, starts: FloatArray
+) -> FloatArray:
+    """Minimise the distance over uv = origin + q axes, q >= 0, sum q <= 1; returns uv (P, 2).
+
+    Newton from the best of the starts (S, d); damped as by Levenberg and Marquardt, which is
+    needed where a mid-edge node is far from the middle of its edge.
+    """
+    samples = np.einsum("sa,pak->psk", shape_functions(origin + starts @ axes), nodes)
+    q = starts[np.argmin(np.sum((samples - points[:, None]) ** 2, axis=-1), axis=1)]
+    damping, todo = np.zeros(len(points)), np.arange(len(points))
+    curvature = np.einsum("di,ija,ej->dea", axes, _SECOND_DERIVATIVES, axes)
+    for _ in range(_STEPS):
+        x, p, at = nodes[todo], points[todo], q[todo]
+        uv = origin + at @ axes
+        gap = _gap(x, p, uv)
+        tangents = np.einsum("di,pia,pak->pdk", axes, shape_derivatives(uv), x, optimize=True)
+        normal = tangents @ tangents.transpose(0, 2, 1)
+        size = np.trace(normal, axis1=1, axis2=2) + np.finfo(float).tiny
+        hessian = normal + np.einsum("dea,pa->pde", curvature, np.einsum("pak,pk->pa", x, gap))
+        convex = np.linalg.eigvalsh(hessian)[:, 0] > 1e-6 * size
+        hessian = np.where(convex[:, None, None], hessian, normal)
+        hessian += ((damping[todo] + 1e-15) * size)[:, None, None] * np.eye(len(axes))
+        step = np.linalg.solve(hessian, tangents @ gap[:, :, None])[..., 0]
+        trial = np.clip(at - step, 0.0, 1.0)
+        trial -= 0.5 * np.maximum(trial.sum(axis=1, keepdims=True) - 1.0, 0.0)
+        after = np.sum(_gap(x, p, origin + trial @ axes) ** 2, axis=1)
+        better = after <= np.sum(gap**2, axis=1)
+        q[todo[better]] = trial[better]
+        raised = np.maximum(10.0 * damping[todo], 1e-3)
+        damping[todo] = np.where(better, 0.1 * damping[todo], raised)
+        todo = todo[np.max(np.abs(trial - at), axis=1) > _CONVERGED]
+        if len(todo) == 0:
+            break
+    return np.asarray(origin + q @ axes)
