@@ -1,0 +1,26 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Sparse direct solvers behind one protocol, with every residual checked."""
+
+from quietblade.linalg.chain import (
+    Precision,
+    SolverChain,
+    SolverName,
+    default_threads,
+    make_solver,
+)
+from quietblade.linalg.protocol import Analysis, Factorization, SparseMatrix, SparseSolver
+from quietblade.linalg.report import Fallback, SolverReport
+
+__all__ = [
+    "Analysis",
+    "Factorization",
+    "Fallback",
+    "Precision",
+    "SolverChain",
+    "SolverName",
+    "SolverReport",
+    "SparseMatrix",
+    "SparseSolver",
+    "default_threads",
+    "make_solver",
+]
