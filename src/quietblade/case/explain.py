@@ -1,0 +1,163 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""From validation errors to findings that a user can act on."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any, get_args
+
+from pydantic import BaseModel, ValidationError
+from pydantic.fields import FieldInfo
+from pydantic_core import ErrorDetails
+
+from quietblade.case.fields import CASE_PROBLEM, Quantity
+from quietblade.case.library import LAW_OF
+from quietblade.case.materials import LAWS
+from quietblade.case.problems import Path, dotted, nearest, suggestion
+from quietblade.case.source import Finding
+from quietblade.case.spans import Spanwise
+
+Model = type[BaseModel]
+
+_TYPES = {
+    "int_type": ("a whole number is needed", "Write a number such as 40, without quotes"),
+    "float_type": ("a number is needed", "Write a number such as 0.5, without quotes"),
+    "string_type": ("text is needed", "Write it in quotes"),
+    "finite_number": ("is not a finite number", "Write a finite number"),
+    "dict_type": ("a table is needed", "Write its keys below a header in [ ]"),
+    "model_type": ("a table is needed", "Write its keys below a header in [ ]"),
+    "model_attributes_type": ("a table is needed", "Write its keys below a header in [ ]"),
+}
+_BLADE_LAWS = ("isotropic", "orthotropic")
+_FILM_LAWS = ("mooney-rivlin",)
+
+
+def explain(error: ValidationError, data: Mapping[str, Any], root: Model) -> Iterator[Finding]:
+    """Say what is wrong for each validation error of a case."""
+    details = error.errors(include_url=False)
+    missing = {_in_file(d["loc"]) for d in details if d["type"] == "missing"}
+    misspelt: set[Path] = set()
+    for detail in details:
+        if detail["type"] == "extra_forbidden":
+            *table, key = _in_file(detail["loc"])
+            near = nearest(str(key), [str(path[-1]) for path in missing if [*path[:-1]] == table])
+            misspelt.update({(*table, near)} if near else ())
+    for detail in details:
+        # a misspelt key is one problem, not also a missing one
+        if detail["type"] != "missing" or _in_file(detail["loc"]) not in misspelt:
+            yield _explain(detail, data, root)
+
+
+def _explain(detail: ErrorDetails, data: Mapping[str, Any], root: Model) -> Finding:
+    path, kind, context = _in_file(detail["loc"]), detail["type"], detail.get("ctx", {})
+    if kind == CASE_PROBLEM:
+        return Finding((*path, *context["at"]), context["message"], context["remedy"])
+    if kind == "missing":
+        return _missing(path, data, root)
+    if kind == "extra_forbidden":
+        return _unknown(path, data, root)
+    if kind in ("union_tag_not_found", "union_tag_invalid"):
+        fault = "is missing" if kind == "union_tag_not_found" else "is not a material law"
+        return Finding((*path, "law"), fault, f"Known: {_listed(LAWS)}")
+    message, remedy = _TYPES.get(kind, (detail["msg"][:1].lower() + detail["msg"][1:], ""))
+    return Finding(path, message, remedy)
+
+
+def _in_file(loc: tuple[int | str, ...]) -> Path:
+    # pydantic inserts the law of a material behind its name
+    return loc[:2] + loc[3:] if loc[:1] == ("materials",) and len(loc) > 2 else loc
+
+
+def _missing(path: Path, data: Mapping[str, Any], root: Model) -> Finding:
+    *table, key = path
+    model = _model_at(tuple(table), data, root)
+    info = model.model_fields[str(key)] if model else None
+    if info is None:
+        return Finding(path, "is missing", f"Add {key}")
+    inner = _table_model(info.annotation)
+    if inner is not None:
+        wanted = [name for name, f in inner.model_fields.items() if f.is_required()]
+        return Finding(path, "this table is missing", f"Add [{key}] with {', '.join(wanted)}")
+    return Finding(path, "is missing", f"{info.description}. Add {_example(str(key), info)}")
+
+
+def _example(key: str, info: FieldInfo) -> str:
+    for note in info.metadata:
+        quantity = note.quantity if isinstance(note, Spanwise) else note
+        if isinstance(quantity, Quantity):
+            kind = quantity.kind
+            return f'{key} = "{kind.example}"' if kind.unit else f"{key} = 0.06"
+    return f"{key} = ..."
+
+
+def _unknown(path: Path, data: Mapping[str, Any], root: Model) -> Finding:
+    *table, key = path
+    model = _model_at(tuple(table), data, root)
+    known = list(model.model_fields) if model else []
+    near = suggestion(str(key), known)
+    if near:
+        return Finding(path, "unknown key", near)
+    elsewhere = [
+        dotted((name, str(key)))
+        for name, info in root.model_fields.items()
+        if (inner := _table_model(info.annotation)) and key in inner.model_fields
+    ]
+    if elsewhere:
+        return Finding(path, "unknown key here", f"Did you mean {' or '.join(elsewhere)}?")
+    return Finding(path, "unknown key", f"Known here: {', '.join(known)}")
+
+
+def _model_at(path: Path, data: Mapping[str, Any], root: Model) -> Model | None:
+    if not path:
+        return root
+    if path[0] == "materials":
+        return LAWS.get(_laws(data).get(str(path[-1]), ""))
+    info = root.model_fields.get(str(path[0]))
+    return _table_model(info.annotation) if info and len(path) == 1 else None
+
+
+def _table_model(annotation: Any) -> Model | None:
+    for candidate in (annotation, *get_args(annotation)):
+        if isinstance(candidate, type) and issubclass(candidate, BaseModel):
+            return candidate
+    return None
+
+
+def material_findings(data: Mapping[str, Any]) -> Iterator[Finding]:
+    """Check the names of materials: they exist, and their laws suit their places."""
+    own = data.get("materials")
+    for name in own if isinstance(own, Mapping) else ():
+        if name in LAW_OF:
+            yield Finding(
+                ("materials", name), "is the name of a library material", "Choose another name"
+            )
+    laws = dict(LAW_OF) | _laws(data)
+    for part, allowed in (("blade", _BLADE_LAWS), ("film", _FILM_LAWS)):
+        table = data.get(part)
+        name = table.get("material") if isinstance(table, Mapping) else None
+        if not isinstance(name, str):
+            continue
+        if name not in laws:
+            near = suggestion(name, laws)
+            known = f"Known: {_listed(laws)}; or define [materials.{dotted((name,))}]"
+            yield Finding(
+                (part, "material"), "there is no material of this name", f"{near} {known}".strip()
+            )
+        elif laws[name] in LAWS and laws[name] not in allowed:
+            yield Finding(
+                (part, "material"),
+                f"has the law {laws[name]}, which the {part} cannot have",
+                f"The {part} needs the law {' or '.join(allowed)}",
+            )
+
+
+def _laws(data: Mapping[str, Any]) -> dict[str, str]:
+    """Law of each material that the case defines; empty where it says nothing usable."""
+    own = data.get("materials")
+    laws = {}
+    for name, words in own.items() if isinstance(own, Mapping) else ():
+        law = words.get("law") if isinstance(words, Mapping) else None
+        laws[name] = law if isinstance(law, str) else ""
+    return laws
+
+
+def _listed(names: Mapping[str, Any]) -> str:
+    return ", ".join(f'"{name}"' for name in names)

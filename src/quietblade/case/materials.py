@@ -1,0 +1,168 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Materials as a case file says them, with the conditions that make a solid possible."""
+
+from collections.abc import Mapping
+from math import sqrt
+from typing import Annotated, Literal, TypeAlias
+
+from pydantic import Field, model_validator
+
+from quietblade.case.fields import (
+    Angle,
+    Density,
+    Modulus,
+    ModulusOrZero,
+    Number,
+    Words,
+    between,
+    wrong,
+)
+
+Ratio = Number
+LossFactor = Annotated[Number, between(0.0, 10.0)]
+
+_REVERSED = "nu_ij is strain j from stress i; some tables print nu_ji = nu_ij E_j / E_i"
+
+
+class IsotropicWords(Words):
+    """Isotropic Saint-Venant-Kirchhoff solid."""
+
+    law: Literal["isotropic"] = Field(title="Law", description="Isotropic Saint-Venant-Kirchhoff")
+    density: Density = Field(title="Density", description="Mass per undeformed volume")
+    E: Modulus = Field(title="Young's modulus", description="Young's modulus E")
+    nu: Ratio = Field(title="Poisson's ratio", description="Poisson's ratio nu, between -1 and 1/2")
+
+    @model_validator(mode="after")
+    def _check_definite(self) -> "IsotropicWords":
+        if not -1.0 < self.nu < 0.5:
+            raise wrong(
+                "the stiffness is not positive definite: -1 < nu < 1/2 fails",
+                "A nearly incompressible solid needs the law mooney-rivlin",
+                at=("nu",),
+            )
+        return self
+
+
+class OrthotropicWords(Words):
+    """Orthotropic Saint-Venant-Kirchhoff solid.
+
+    Of each pair of Poisson's ratios (nu12 or nu21, nu23 or nu32, nu13 or nu31) one is given.
+    """
+
+    law: Literal["orthotropic"] = Field(
+        title="Law", description="Orthotropic Saint-Venant-Kirchhoff"
+    )
+    density: Density = Field(title="Density", description="Mass per undeformed volume")
+    E1: Modulus = Field(title="E1", description="Young's modulus along axis 1, the fibres")
+    E2: Modulus = Field(title="E2", description="Young's modulus along axis 2, across in the ply")
+    E3: Modulus = Field(title="E3", description="Young's modulus along axis 3, the thickness")
+    G12: Modulus = Field(title="G12", description="Shear modulus in the ply")
+    G23: Modulus = Field(title="G23", description="Shear modulus between axes 2 and 3")
+    G13: Modulus = Field(title="G13", description="Shear modulus between axes 1 and 3")
+    nu12: Ratio | None = Field(None, title="nu12", description="Strain 2 from stress 1")
+    nu21: Ratio | None = Field(None, title="nu21", description="Strain 1 from stress 2")
+    nu23: Ratio | None = Field(None, title="nu23", description="Strain 3 from stress 2")
+    nu32: Ratio | None = Field(None, title="nu32", description="Strain 2 from stress 3")
+    nu13: Ratio | None = Field(None, title="nu13", description="Strain 3 from stress 1")
+    nu31: Ratio | None = Field(None, title="nu31", description="Strain 1 from stress 3")
+    ply_angle: Angle = Field(
+        0.0,
+        title="Ply angle",
+        description="Angle from the span to axis 1, turning about the thickness axis towards the "
+        "trailing edge",
+    )
+
+    def ratio(self, i: int, j: int) -> float:
+        """Poisson's ratio nu_ij for i < j, from whichever of nu_ij and nu_ji is given."""
+        direct: float | None = getattr(self, f"nu{i}{j}")
+        if direct is not None:
+            return direct
+        inverse: float = getattr(self, f"nu{j}{i}")
+        moduli: tuple[float, ...] = (self.E1, self.E2, self.E3)
+        return inverse * moduli[i - 1] / moduli[j - 1]
+
+    @model_validator(mode="after")
+    def _check_definite(self) -> "OrthotropicWords":
+        for i, j in ((1, 2), (2, 3), (1, 3)):
+            self._one_spelling(f"nu{i}{j}", f"nu{j}{i}")
+        moduli = {1: self.E1, 2: self.E2, 3: self.E3}
+        determinant = 1.0
+        for i, j in ((1, 2), (2, 3), (1, 3)):
+            scaled = self.ratio(i, j) * sqrt(moduli[j] / moduli[i])
+            determinant -= scaled * scaled
+            if not abs(scaled) < 1.0:
+                direct = getattr(self, f"nu{i}{j}") is not None
+                a, b = (i, j) if direct else (j, i)
+                raise wrong(
+                    "the stiffness is not positive definite: "
+                    f"|nu{a}{b}| < sqrt(E{a} / E{b}) = {sqrt(moduli[a] / moduli[b]):.4g} fails",
+                    _REVERSED,
+                    at=(f"nu{a}{b}",),
+                )
+        # of the compliance of the normal stresses, scaled to a unit diagonal
+        nu12, nu23, nu13 = self.ratio(1, 2), self.ratio(2, 3), self.ratio(1, 3)
+        determinant -= 2.0 * nu12 * nu23 * nu13 * self.E3 / self.E1
+        if not determinant > 0.0:
+            raise wrong(
+                "the stiffness is not positive definite: 1 - nu12 nu21 - nu23 nu32 - nu13 nu31 "
+                f"- 2 nu12 nu23 nu31 > 0 fails, it is {determinant:.4g} for "
+                f"nu12 = {nu12:.4g}, nu23 = {nu23:.4g}, nu13 = {nu13:.4g}",
+                f"The three Poisson's ratios together are too large. {_REVERSED}",
+            )
+        return self
+
+    def _one_spelling(self, direct: str, inverse: str) -> None:
+        given = [key for key in (direct, inverse) if getattr(self, key) is not None]
+        if len(given) == 2:
+            raise wrong(
+                f"both {direct} and {inverse} are given",
+                f"Give one of them. {_REVERSED}",
+                at=(inverse,),
+            )
+        if not given:
+            raise wrong(f"{direct} is missing", f"Add {direct} (or {inverse}). {_REVERSED}")
+
+
+class MooneyRivlinWords(Words):
+    """Nearly incompressible Mooney-Rivlin solid with a constant loss factor."""
+
+    law: Literal["mooney-rivlin"] = Field(
+        title="Law", description="Nearly incompressible Mooney-Rivlin"
+    )
+    density: Density = Field(title="Density", description="Mass per undeformed volume")
+    c10: ModulusOrZero = Field(title="C10", description="Coefficient of the first invariant")
+    c01: ModulusOrZero = Field(title="C01", description="Coefficient of the second invariant")
+    bulk_modulus: Modulus = Field(title="Bulk modulus", description="Bulk modulus K")
+    loss_factor: LossFactor = Field(
+        title="Loss factor",
+        description="Loss factor eta of the complex shear modulus G (1 + i eta)",
+    )
+
+    @property
+    def shear_modulus(self) -> float:
+        """Shear modulus of small strains, 2 (c10 + c01) [Pa]."""
+        return 2.0 * (self.c10 + self.c01)
+
+    @model_validator(mode="after")
+    def _check_stable(self) -> "MooneyRivlinWords":
+        if self.shear_modulus <= 0.0:
+            raise wrong("the shear modulus 2 (c10 + c01) is zero", "Give c10 or c01 a value")
+        if self.bulk_modulus <= 2.0 / 3.0 * self.shear_modulus:
+            raise wrong(
+                "Poisson's ratio would be negative: bulk_modulus > 2/3 of the shear modulus "
+                f"2 (c10 + c01) = {self.shear_modulus:.4g} Pa fails",
+                "Check the units of c10, c01 and bulk_modulus",
+                at=("bulk_modulus",),
+            )
+        return self
+
+
+SolidWords: TypeAlias = IsotropicWords | OrthotropicWords | MooneyRivlinWords
+MaterialWords = Annotated[SolidWords, Field(discriminator="law")]
+
+LAWS: Mapping[str, type[SolidWords]] = {
+    "isotropic": IsotropicWords,
+    "orthotropic": OrthotropicWords,
+    "mooney-rivlin": MooneyRivlinWords,
+}
+"""Model of each law."""

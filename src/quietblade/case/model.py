@@ -1,0 +1,179 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The study as the user says it: one frozen object, in SI units, that knows where it came from."""
+
+import copy
+import hashlib
+import json
+from collections.abc import Mapping
+from dataclasses import replace
+from os import PathLike
+from pathlib import Path as FilePath
+from typing import Any, Self
+
+from pydantic import Field, PrivateAttr, ValidationError
+
+from quietblade.case.explain import explain, material_findings
+from quietblade.case.fields import Text, Words
+from quietblade.case.library import library_material
+from quietblade.case.materials import MaterialWords, SolidWords
+from quietblade.case.problems import InvalidCaseError
+from quietblade.case.source import Finding, Source, parse_source, read_source
+from quietblade.case.tables import (
+    AcousticsWords,
+    BladeWords,
+    ExcitationWords,
+    FilmWords,
+    FlowWords,
+    MeshWords,
+    SolverWords,
+    StaticWords,
+    WaterWords,
+)
+
+_KEY_DIGITS = 12
+
+
+class Case(Words):
+    """A study of one blade. Made by `load`, `parse` or `from_plain`; all values in SI units."""
+
+    title: Text = Field("", title="Title", description="One line for people")
+    blade: BladeWords = Field(title="Blade", description="Shape and material of the blade")
+    film: FilmWords | None = Field(None, title="Film", description="Embedded viscoelastic film")
+    materials: dict[str, MaterialWords] = Field(
+        default_factory=dict, title="Materials", description="Materials by name"
+    )
+    water: WaterWords = Field(WaterWords(), title="Water", description="The water around")
+    flow: FlowWords = Field(title="Flow", description="Steady operation")
+    static: StaticWords = Field(
+        StaticWords(), title="Static", description="Equilibrium of blade and flow"
+    )
+    acoustics: AcousticsWords = Field(title="Acoustics", description="Vibration and sound")
+    excitation: ExcitationWords = Field(title="Excitation", description="Harmonic load")
+    mesh: MeshWords = Field(title="Mesh", description="Size of the elements")
+    solver: SolverWords = Field(SolverWords(), title="Solver", description="Linear solver")
+
+    _source: Source = PrivateAttr(default_factory=Source)
+
+    @classmethod
+    def load(cls, path: str | PathLike[str]) -> Self:
+        """Read a case file.
+
+        Raises
+        ------
+        InvalidCaseError
+            Lists every problem with file, line, key, value and remedy.
+        """
+        return cls._build(read_source(FilePath(path)))
+
+    @classmethod
+    def parse(cls, text: str, name: str = "case.toml") -> Self:
+        """Read the text of a case file; ``name`` stands for it in messages.
+
+        Raises
+        ------
+        InvalidCaseError
+            Lists every problem with file, line, key, value and remedy.
+        """
+        return cls._build(parse_source(text, name))
+
+    @classmethod
+    def from_plain(cls, data: Mapping[str, Any], name: str = "case") -> Self:
+        """Make a case from what `plain` gave: bare numbers are SI values.
+
+        Raises
+        ------
+        InvalidCaseError
+            Lists every problem with key, value and remedy.
+        """
+        return cls._build(Source(name, data, si=True))
+
+    def varied(self, changes: Mapping[str, Any]) -> Self:
+        """Return the same case with other values, written as in a case file.
+
+        Parameters
+        ----------
+        changes : mapping
+            Dotted keys to values, for example ``{"mesh.size": "40 mm"}``.
+
+        Raises
+        ------
+        InvalidCaseError
+            The changed case has problems.
+        """
+        data: dict[str, Any] = copy.deepcopy(dict(self._source.data))
+        lines = dict(self._source.lines)
+        for key, value in changes.items():
+            *tables, last = key.split(".")
+            table = data
+            for name in tables:
+                inner = table.setdefault(name, {})
+                if not isinstance(inner, dict):
+                    fault = Finding(tuple(tables), "is not a table", f"It has no key {last}")
+                    raise InvalidCaseError([self._source.problem(fault)])
+                table = inner
+            table[last] = value
+            changed = (*tables, last)
+            lines = {path: n for path, n in lines.items() if path[: len(changed)] != changed}
+        return self._build(replace(self._source, data=data, lines=lines))
+
+    @property
+    def file(self) -> str:
+        """Name of the file that the case was read from."""
+        return self._source.file
+
+    def plain(self) -> dict[str, Any]:
+        """Return JSON-able data with SI values; `from_plain` reads it."""
+        return self.model_dump(mode="json", exclude_none=True)
+
+    def content_key(self) -> str:
+        """Hash of everything that the result depends on; the same for the same physics.
+
+        Titles, comments, the names of materials and materials that are not used do not matter,
+        nor does the unit in which a value is written.
+        """
+        plain = self.plain()
+        del plain["title"], plain["materials"], plain["blade"]["material"]
+        plain["materials"] = {"blade": self.material("blade").model_dump(mode="json")}
+        if self.film is not None:
+            del plain["film"]["material"]
+            plain["materials"]["film"] = self.material("film").model_dump(mode="json")
+        text = json.dumps(_rounded(plain), sort_keys=True, separators=(",", ":"))
+        return hashlib.sha256(text.encode()).hexdigest()
+
+    def material(self, part: str) -> SolidWords:
+        """Material of a part, ``"blade"`` or ``"film"``, from the case or the library.
+
+        Raises
+        ------
+        KeyError
+            The case has no such part.
+        """
+        words = {"blade": self.blade, "film": self.film}[part]
+        if words is None:
+            raise KeyError(part)
+        own = self.materials.get(words.material)
+        return own if own is not None else library_material(words.material)
+
+    def invalid(self, *findings: Finding) -> InvalidCaseError:
+        """Make the error that points at these findings in the file of this case."""
+        return InvalidCaseError(map(self._source.problem, findings))
+
+    @classmethod
+    def _build(cls, source: Source) -> Self:
+        findings = list(material_findings(source.data))
+        try:
+            case = cls.model_validate(source.data, context={"si": source.si})
+        except ValidationError as error:
+            findings.extend(explain(error, source.data, cls))
+        if findings:
+            raise InvalidCaseError(map(source.problem, findings))
+        case._source = source
+        return case
+
+
+def _rounded(value: Any) -> Any:
+    if isinstance(value, float):
+        return float(f"{value:.{_KEY_DIGITS}g}")
+    if isinstance(value, dict):
+        return {key: _rounded(inner) for key, inner in value.items()}
+    return [_rounded(inner) for inner in value] if isinstance(value, list) else value

@@ -1,0 +1,285 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The tables of a case file: blade, film, water, flow, static, acoustics, excitation and so on."""
+
+from typing import Annotated, Literal
+
+from pydantic import AfterValidator, Field, model_validator
+
+from quietblade.case.fields import (
+    AngularSpeed,
+    Band,
+    Count,
+    Density,
+    Extent,
+    Fraction,
+    Frequency,
+    Length,
+    LengthOrZero,
+    Number,
+    Point,
+    Pressure,
+    PressureOrZero,
+    Speed,
+    Text,
+    Viscosity,
+    Words,
+    between,
+    entries_from,
+    one_of,
+    wrong,
+)
+from quietblade.case.spans import (
+    ConstantSpan,
+    SpanAngle,
+    SpanCamber,
+    SpanLength,
+    SpanOffset,
+    SpanThickness,
+)
+
+Section = Literal["naca-4"]
+Inflow = Literal["none"]
+Configuration = Literal["C0", "C1"]
+Radiation = Literal["bgt1"]
+Tangent = Literal["full", "paper"]
+Loss = Literal["isochoric", "paper"]
+Side = Literal["upper", "lower"]
+SolverName = Literal["auto", "rslab", "mkl-pardiso", "superlu"]
+Precision = Literal["mixed", "double"]
+
+_MOST_FREQUENCIES = 100_000
+
+
+def _inside(extent: tuple[float, float], ends: str) -> tuple[float, float]:
+    if not (extent[0] > 0.0 and extent[1] < 1.0):
+        raise wrong(
+            "the film is embedded and must end inside the blade",
+            f"Leave material at {ends}: fractions above 0 and below 1",
+        )
+    return extent
+
+
+def _odd(count: int) -> int:
+    if count % 2 == 0:
+        raise wrong("is even", f"Choose an odd number such as {count + 1}: one node is the nose")
+    return count
+
+
+def _distinct(names: tuple[Configuration, ...]) -> tuple[Configuration, ...]:
+    if len(set(names)) < len(names):
+        raise wrong("names a configuration twice", 'Write ["C0", "C1"]')
+    return tuple(sorted(names))
+
+
+class BladeWords(Words):
+    """Shape of the blade as functions of the span, and what it is made of."""
+
+    hub_radius: LengthOrZero = Field(
+        title="Hub radius", description="Radius of the root section from the rotor axis"
+    )
+    span: Length = Field(title="Span", description="Distance from the root to the tip section")
+    section: Annotated[Section, one_of(Section, "a section family")] = Field(
+        "naca-4", title="Section", description="Family of sections"
+    )
+    chord: SpanLength = Field(title="Chord", description="Chord of the sections along the span")
+    thickness: SpanThickness = Field(
+        title="Thickness", description="Largest thickness as a fraction of the chord"
+    )
+    camber: SpanCamber = Field(
+        ConstantSpan(0.0), title="Camber", description="Largest camber as a fraction of the chord"
+    )
+    blade_angle: SpanAngle = Field(
+        ConstantSpan(0.0),
+        title="Blade angle",
+        description="Angle of the chord from the rotor axis; positive raises the incidence",
+    )
+    sweep: SpanOffset = Field(
+        ConstantSpan(0.0),
+        title="Sweep",
+        description="Shift of the sections along their chord, towards the trailing edge",
+    )
+    rake: SpanOffset = Field(
+        ConstantSpan(0.0),
+        title="Rake",
+        description="Shift of the sections along the rotor axis, downstream",
+    )
+    alignment: Fraction = Field(
+        0.5, title="Alignment", description="Chord fraction that lies on the reference line"
+    )
+    trailing_edge: Annotated[Number, between(1e-4, 0.1)] = Field(
+        0.006,
+        title="Trailing edge",
+        description="Thickness of the blunt trailing edge as a fraction of the chord",
+    )
+    material: Text = Field(title="Material", description="Name of the blade's material")
+
+
+class FilmWords(Words):
+    """Viscoelastic film embedded around the camber surface."""
+
+    span: Annotated[Extent, AfterValidator(lambda r: _inside(r, "root and tip"))] = Field(
+        title="Span", description="Range of span fractions"
+    )
+    chord: Annotated[Extent, AfterValidator(lambda r: _inside(r, "both edges"))] = Field(
+        title="Chord", description="Range of chord fractions"
+    )
+    thickness: Length = Field(title="Thickness", description="Thickness of the film")
+    material: Text = Field(title="Material", description="Name of the film's material")
+    minimum_cover: LengthOrZero = Field(
+        0.1e-3,
+        title="Minimum cover",
+        description="Least thickness of blade material between the film and either face",
+    )
+
+
+class WaterWords(Words):
+    """The water around the blade."""
+
+    density: Density = Field(1000.0, title="Density", description="Mass per volume")
+    sound_speed: Speed = Field(1500.0, title="Sound speed", description="Speed of sound")
+    kinematic_viscosity: Viscosity = Field(
+        1.1e-6,
+        title="Kinematic viscosity",
+        description="For Reynolds numbers (sea water, 17 deg C)",
+    )
+    vapour_pressure: PressureOrZero = Field(
+        2.34e3, title="Vapour pressure", description="For the cavitation check (20 deg C)"
+    )
+
+
+class FlowWords(Words):
+    """Steady operation, and the sections on which the flow is computed."""
+
+    speed: Speed = Field(
+        title="Speed", description="Speed of the water along the rotor axis, downstream"
+    )
+    rotation: AngularSpeed = Field(
+        title="Rotation", description="Angular speed of the blade about the rotor axis"
+    )
+    inflow: Annotated[Inflow, one_of(Inflow, "an inflow model")] = Field(
+        "none", title="Inflow", description="Induced velocities: none (blade elements)"
+    )
+    depth: LengthOrZero = Field(
+        0.0, title="Depth", description="Depth of the rotor axis, for the cavitation check"
+    )
+    atmospheric_pressure: Pressure = Field(
+        101.325e3, title="Atmospheric pressure", description="For the cavitation check"
+    )
+    sections: Annotated[Count, between(5, 2001)] = Field(
+        101, title="Sections", description="Number of sections along the span"
+    )
+    section_nodes: Annotated[Count, between(41, 1001), AfterValidator(_odd)] = Field(
+        161, title="Section nodes", description="Nodes on the contour of a section, odd"
+    )
+
+
+class StaticWords(Words):
+    """Iteration between flow and structure."""
+
+    tolerance: Annotated[Number, between(0.0, 0.1, open_low=True)] = Field(
+        1e-5, title="Tolerance", description="Relative change of the displacement at the end"
+    )
+    max_iterations: Annotated[Count, between(1, 10_000)] = Field(
+        40, title="Largest number of iterations", description="Then the run ends unconverged"
+    )
+    newton_tolerance: Annotated[Number, between(0.0, 1e-2, open_low=True)] = Field(
+        1e-8,
+        title="Newton tolerance",
+        description="Relative residual at which the structure's equilibrium is accepted",
+    )
+
+
+class AcousticsWords(Words):
+    """Band, water sphere and linearisation of the vibro-acoustic step."""
+
+    band: Band = Field(title="Band", description="Lowest and highest frequency")
+    step: Frequency = Field(2.5, title="Step", description="Spacing of the base frequencies")
+    points_per_mode: Annotated[Count, between(0, 1001)] = Field(
+        9, title="Points per mode", description="Frequencies added around each wet mode"
+    )
+    configurations: Annotated[
+        tuple[Annotated[Configuration, one_of(Configuration, "a configuration")], ...],
+        AfterValidator(_distinct),
+        entries_from(1),
+    ] = Field(("C0", "C1"), title="Configurations", description="At rest (C0), under load (C1)")
+    radiation: Annotated[Radiation, one_of(Radiation, "a radiation condition")] = Field(
+        "bgt1", title="Radiation", description="Condition on the outer sphere"
+    )
+    sphere_radius: Length = Field(title="Sphere radius", description="Radius of the water sphere")
+    sphere_centre: Point | None = Field(
+        None,
+        title="Sphere centre",
+        description="Centre of the water sphere x, y, z; the middle of the span if not given",
+    )
+    gap: Length = Field(
+        0.05,
+        title="Gap",
+        description="Least distance of the blade, at rest and deformed, from the sphere",
+    )
+    tangent: Annotated[Tangent, one_of(Tangent, "a tangent")] = Field(
+        "full",
+        title="Tangent",
+        description="With load stiffness and spin softening (full), or without (paper)",
+    )
+    loss: Annotated[Loss, one_of(Loss, "a loss model")] = Field(
+        "isochoric",
+        title="Loss",
+        description="Loss on the film's isochoric stiffness, or on its whole tangent (paper)",
+    )
+
+    @model_validator(mode="after")
+    def _check_step(self) -> "AcousticsWords":
+        low, high = self.band
+        if self.step > high - low:
+            raise wrong(
+                f"is wider than the band of {high - low:g} Hz",
+                "Choose a smaller step",
+                at=("step",),
+            )
+        count = (high - low) / self.step
+        if count > _MOST_FREQUENCIES:
+            raise wrong(
+                f"makes {count:.3g} frequencies",
+                "Choose a larger step or a smaller band",
+                at=("step",),
+            )
+        return self
+
+
+class ExcitationWords(Words):
+    """Harmonic pressure on a patch of the blade's surface."""
+
+    pressure: Pressure = Field(1.0, title="Pressure", description="Peak amplitude")
+    side: Annotated[Side, one_of(Side, "a side of the blade")] = Field(
+        "upper", title="Side", description="Upper (suction) or lower face"
+    )
+    span: Extent = Field(title="Span", description="Range of span fractions")
+    chord: Extent = Field(title="Chord", description="Range of chord fractions")
+
+
+class MeshWords(Words):
+    """Size of the elements."""
+
+    size: Length = Field(title="Size", description="Edge length of the elements on the blade")
+    water_size: Length | None = Field(
+        None,
+        title="Water size",
+        description="Edge length at the sphere; if not given a quarter of its radius, or a sixth "
+        "of the shortest wavelength if that is smaller",
+    )
+
+
+class SolverWords(Words):
+    """Sparse direct solver of the linear systems."""
+
+    name: Annotated[SolverName, one_of(SolverName, "a solver")] = Field(
+        "auto", title="Name", description="Solver, or auto for the best that is installed"
+    )
+    precision: Annotated[Precision, one_of(Precision, "a precision")] = Field(
+        "mixed",
+        title="Precision",
+        description="Factors in single precision with refinement (mixed), or in double",
+    )
+    tolerance: Annotated[Number, between(0.0, 1e-3, open_low=True)] = Field(
+        1e-9, title="Tolerance", description="Relative residual that each solve must reach"
+    )

@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""``quietblade check``: say how a case file is understood, before anything runs."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from quietblade.cli.common import ExitCode, console, show_json, show_notices, show_table
+
+
+def check(
+    case: Annotated[Path, typer.Argument(help="Case file (TOML).")],
+    as_json: Annotated[bool, typer.Option("--json", help="Write JSON instead of tables.")] = False,
+) -> int:
+    """Say how a case file is understood; nothing is computed."""
+    # imported here, so that help does not wait for the words, nor a wrong case for the geometry
+    from quietblade.case import Case, InvalidCaseError  # noqa: PLC0415
+
+    try:
+        words = Case.load(case)
+        from quietblade.cli.describe import case_data, case_tables  # noqa: PLC0415
+        from quietblade.study.preflight import preflight  # noqa: PLC0415
+
+        known = preflight(words)
+    except InvalidCaseError as error:
+        if not as_json:
+            raise
+        show_json({"valid": False, "problems": [problem.as_dict() for problem in error.problems]})
+        return ExitCode.CASE_WRONG
+    if as_json:
+        show_json(case_data(words, known))
+        return ExitCode.DONE
+    console.print(f"{case}: {words.title or 'a case'}", markup=False, style="bold")
+    for title, rows in case_tables(words, known):
+        show_table(title, rows)
+    show_notices(known.notices)
+    return ExitCode.DONE

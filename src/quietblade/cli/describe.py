@@ -1,0 +1,170 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A case in words for people, and as data for programs."""
+
+from dataclasses import asdict
+from math import degrees
+from typing import Any
+
+from quietblade.case import Case
+from quietblade.case.materials import IsotropicWords, OrthotropicWords, SolidWords
+from quietblade.case.spans import ConstantSpan, FormulaSpan, SpanValue
+from quietblade.case.units import in_unit
+from quietblade.study.preflight import Preflight
+
+Rows = list[tuple[str, str]]
+
+
+def case_tables(case: Case, known: Preflight) -> list[tuple[str, Rows]]:
+    """Say in words and convenient units what a case says and what follows from it."""
+    return [
+        ("Blade", _blade_rows(case, known)),
+        ("Flow", _flow_rows(case, known)),
+        ("Acoustics", _acoustics_rows(case, known)),
+        ("Numbers", _number_rows(case, known)),
+    ]
+
+
+def _blade_rows(case: Case, known: Preflight) -> Rows:
+    blade = case.blade
+    rows = [
+        ("span", f"{_mm(blade.span)} from radius {_mm(blade.hub_radius)}"),
+        ("sections", f"{blade.section}, trailing edge {100 * blade.trailing_edge:.3g} % of chord"),
+        ("chord", _spanwise(blade.chord, "mm")),
+        ("thickness", _spanwise(blade.thickness, "%", "of chord")),
+        ("camber", _spanwise(blade.camber, "%", "of chord")),
+        ("blade angle", _spanwise(blade.blade_angle, "deg", "from the rotor axis")),
+        ("sweep", _spanwise(blade.sweep, "mm")),
+        ("rake", _spanwise(blade.rake, "mm")),
+        ("reference line", f"at {100 * blade.alignment:.3g} % of chord"),
+        ("volume", f"{1e3 * known.blade.volume():.4g} litres"),
+        ("material", f"{blade.material}: {_solid(case.material('blade'))}"),
+    ]
+    if case.film is None or known.film_cover is None:
+        return [*rows, ("film", "none")]
+    film = case.film
+    return [
+        *rows,
+        (
+            "film",
+            f"{_mm(film.thickness)} thick, span {_percent(film.span)}, "
+            f"chord {_percent(film.chord)}, least cover {_mm(known.film_cover)}",
+        ),
+        ("film material", f"{film.material}: {_solid(case.material('film'))}"),
+    ]
+
+
+def _flow_rows(case: Case, known: Preflight) -> Rows:
+    flow, water = case.flow, case.water
+    root, tip = (degrees(angle) for angle in known.incidence)
+    return [
+        ("water", f"{water.density:g} kg/m^3, sound speed {water.sound_speed:g} m/s"),
+        ("speed", f"{flow.speed:.4g} m/s along the rotor axis"),
+        ("rotation", f"{flow.rotation:.4g} rad/s ({in_unit(flow.rotation, 'rpm'):.4g} rpm)"),
+        ("incidence", f"{root:.3g} deg at the root, {tip:.3g} deg at the tip (undeformed)"),
+        ("inflow", f"{flow.inflow}, {flow.sections} sections of {flow.section_nodes} nodes"),
+        (
+            "equilibrium",
+            f"to {case.static.tolerance:g} in at most {case.static.max_iterations} iterations",
+        ),
+    ]
+
+
+def _acoustics_rows(case: Case, known: Preflight) -> Rows:
+    acoustics, patch = case.acoustics, case.excitation
+    low, high = acoustics.band
+    centre = ", ".join(f"{x:.4g}" for x in known.centre)
+    return [
+        ("band", f"{low:g} to {high:g} Hz, every {acoustics.step:g} Hz"),
+        ("refinement", f"{acoustics.points_per_mode} frequencies around each wet mode"),
+        ("configurations", " and ".join(acoustics.configurations)),
+        ("sphere", f"radius {known.radius:.4g} m about ({centre}) m"),
+        ("gap", f"{_mm(known.clearance)} at rest, {_mm(acoustics.gap)} asked for"),
+        ("radiation", f"{acoustics.radiation}, kR = {known.kr[0]:.3g} to {known.kr[1]:.3g}"),
+        ("tangent, loss", f"{acoustics.tangent}, {acoustics.loss}"),
+        (
+            "excitation",
+            f"{patch.pressure:g} Pa on the {patch.side} face, span {_percent(patch.span)}, "
+            f"chord {_percent(patch.chord)}",
+        ),
+    ]
+
+
+def _number_rows(case: Case, known: Preflight) -> Rows:
+    high = case.acoustics.band[1]
+    return [
+        ("mesh", f"{_mm(case.mesh.size)} on the blade: about {known.surface_elements} triangles"),
+        (
+            "in water",
+            f"{known.elements_per_acoustic_wavelength:.3g} elements per wavelength of "
+            f"{known.acoustic_wavelength:.3g} m at {high:g} Hz",
+        ),
+        (
+            "on the blade",
+            f"about {known.elements_per_bending_wavelength:.2g} elements per bending wavelength of "
+            f"{known.bending_wavelength:.2g} m at {high:g} Hz",
+        ),
+        ("solver", f"{case.solver.name}, {case.solver.precision} precision"),
+        ("content key", case.content_key()[:16]),
+    ]
+
+
+def case_data(case: Case, known: Preflight) -> dict[str, Any]:
+    """Return the same as plain data in SI units, angles in rad."""
+    return {
+        "valid": True,
+        "file": case.file,
+        "content_key": case.content_key(),
+        "case": case.plain(),
+        "derived": {
+            "volume_m3": known.blade.volume(),
+            "planform_area_m2": known.blade.planform_area(),
+            "sphere_centre_m": known.centre.tolist(),
+            "sphere_radius_m": known.radius,
+            "clearance_m": known.clearance,
+            "film_cover_m": known.film_cover,
+            "incidence_rad": known.incidence.tolist(),
+            "kr": known.kr.tolist(),
+            "acoustic_wavelength_m": known.acoustic_wavelength,
+            "bending_wavelength_m": known.bending_wavelength,
+            "elements_per_acoustic_wavelength": known.elements_per_acoustic_wavelength,
+            "elements_per_bending_wavelength": known.elements_per_bending_wavelength,
+            "surface_elements": known.surface_elements,
+        },
+        "notices": [asdict(notice) for notice in known.notices],
+    }
+
+
+def _spanwise(words: SpanValue, unit: str, of: str = "") -> str:
+    if isinstance(words, ConstantSpan):
+        text = f"{in_unit(words.value, unit):.4g} {unit}"
+    elif isinstance(words, FormulaSpan):
+        text = f"{words.formula} {words.unit}".rstrip()
+    else:
+        values = ", ".join(f"{in_unit(value, unit):.4g}" for value in words.values)
+        places = ", ".join(f"{s:.4g}" for s in words.s)
+        text = f"{values} {unit} at s = {places} ({words.interpolation})"
+    return f"{text} {of}".rstrip()
+
+
+def _solid(words: SolidWords) -> str:
+    density = f"{words.density:g} kg/m^3"
+    if isinstance(words, IsotropicWords):
+        return f"isotropic, E = {_gpa(words.E)}, nu = {words.nu:g}, {density}"
+    if isinstance(words, OrthotropicWords):
+        moduli = f"{_gpa(words.E1)}, {_gpa(words.E2)}, {_gpa(words.E3)}"
+        angle = degrees(words.ply_angle)
+        return f"orthotropic, E = {moduli}, axis 1 at {angle:.4g} deg to the span, {density}"
+    shear = f"G = {words.shear_modulus / 1e6:.4g} MPa"
+    return f"Mooney-Rivlin, {shear}, loss factor {words.loss_factor:g}, {density}"
+
+
+def _mm(value: float) -> str:
+    return f"{1e3 * value:.4g} mm"
+
+
+def _gpa(value: float) -> str:
+    return f"{value / 1e9:.4g} GPa"
+
+
+def _percent(extent: tuple[float, float]) -> str:
+    return f"{100 * extent[0]:.3g} to {100 * extent[1]:.3g} %"

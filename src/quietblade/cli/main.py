@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The ``quietblade`` command. A command's module is imported when it is asked for."""
+
+import sys
+from collections.abc import Sequence
+from difflib import get_close_matches
+from importlib import import_module
+from importlib.util import find_spec
+from typing import Annotated, Any, cast
+
+import typer
+from typer.core import TyperGroup
+from typer.main import get_command
+
+from quietblade import __version__
+from quietblade.cli.common import ExitCode, error_console, show_error
+from quietblade.errors import QuietbladeError
+
+COMMANDS = ("new", "check", "run", "show", "plot", "report", "compare")
+"""Each is the function of the same name in the module of the same name."""
+
+# its base is the usage error of the click that typer carries, wherever that is
+_UsageError = cast(type[typer.BadParameter], typer.BadParameter.__mro__[1])
+
+
+class CommandGroup(TyperGroup):
+    """Commands that are imported one by one, so that help and mistakes cost nothing."""
+
+    def list_commands(self, ctx: Any) -> list[str]:
+        """Name the commands in the order of a study."""
+        return [name for name in COMMANDS if find_spec(f"quietblade.cli.{name}")]
+
+    def get_command(self, ctx: Any, cmd_name: str) -> Any:
+        """Import a command."""
+        known = self.list_commands(ctx)
+        if cmd_name not in known:
+            near = get_close_matches(cmd_name, known, n=1)
+            hint = f' Did you mean "{near[0]}"?' if near else ""
+            ctx.fail(f'there is no command "{cmd_name}".{hint} Known: {", ".join(known)}')
+        if cmd_name not in self.commands:
+            function = getattr(import_module(f"quietblade.cli.{cmd_name}"), cmd_name)
+            single = typer.Typer(add_completion=False)
+            single.command(cmd_name)(function)
+            self.commands[cmd_name] = get_command(single)
+        return self.commands[cmd_name]
+
+
+app = typer.Typer(
+    name="quietblade",
+    cls=CommandGroup,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+
+
+def _show_version(wanted: bool) -> None:
+    if wanted:
+        sys.stdout.write(f"quietblade {__version__}\n")
+        raise typer.Exit
+
+
+@app.callback()
+def _quietblade(
+    version: Annotated[
+        bool,
+        typer.Option(
+            "--version", help="Show the version and exit.", callback=_show_version, is_eager=True
+        ),
+    ] = False,
+) -> None:
+    """Flexible propeller blades in water: deformation, wet modes and radiated sound.
+
+    Exit codes: 0 done, 1 wrong case or command, 2 not converged but kept, 3 failed.
+    """
+
+
+def execute(arguments: Sequence[str]) -> int:
+    """Run one command and return its exit code."""
+    try:
+        ended = get_command(app).main(
+            list(arguments) or ["--help"], prog_name="quietblade", standalone_mode=False
+        )
+    except QuietbladeError as error:
+        return show_error(error)
+    except _UsageError as error:
+        error.show()
+        return ExitCode.CASE_WRONG
+    except (typer.Abort, KeyboardInterrupt):
+        error_console.print("stopped")
+        return ExitCode.FAILED
+    return int(ended) if isinstance(ended, int) else ExitCode.DONE
+
+
+def run() -> None:
+    """Entry point of the console script."""
+    sys.exit(execute(sys.argv[1:]))
+
+
+if __name__ == "__main__":
+    run()

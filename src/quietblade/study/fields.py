@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Fields of a run as VTU files."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from quietblade.case import Case
+from quietblade.materials import ply_axes, section_directions
+from quietblade.mesh import Mesh
+from quietblade.propulsion.strain import nodal_strain
+from quietblade.results.store import RunFolder
+from quietblade.results.vtk import PointField, write_fields
+from quietblade.study import translate
+from quietblade.study.statics import Statics
+from quietblade.study.vibration import Sound, Vibration, nodal_shapes
+from quietblade.typing import ComplexArray, FloatArray
+
+
+def write_static_fields(case: Case, mesh: Mesh, statics: Statics, folder: RunFolder) -> None:
+    """Displacement, film shear strain and steady pressure of the blade, drawn on C0."""
+    displacement = np.where(_solid(mesh)[:, None], statics.state.displacement, np.nan)
+    fields = [
+        PointField("displacement", displacement),
+        PointField("pressure", _wetted(mesh, statics.state.surface.values)),
+    ]
+    if statics.shear is not None:
+        axes = ply_axes(0.0, *section_directions(translate.blade_angle_field(case)))
+        strain = nodal_strain(
+            statics.structure, statics.state.structure, axes, region="film"
+        )
+        fields.append(PointField("film_shear_strain", 2.0 * np.hypot(strain[:, 3], strain[:, 4])))
+    cells = {name: blocks for name, blocks in mesh.cells.items() if name != "water"}
+    write_fields(folder.static_fields, mesh.nodes, cells, fields)
+
+
+def write_vibration_fields(
+    mesh: Mesh, vibration: Vibration, sound: Sound, folder: RunFolder
+) -> None:
+    """Mode shapes, and response and sound pressure at the peaks, drawn on the configuration."""
+    solid = {name: blocks for name, blocks in mesh.cells.items() if name != "water"}
+    modes = list(_mode_shapes(mesh, vibration))
+    write_fields(folder.mode_fields(vibration.name), vibration.positions, solid, modes)
+    response = list(_responses(mesh, vibration, sound))
+    write_fields(folder.response_fields(vibration.name), vibration.positions, mesh.cells, response)
+
+
+def _mode_shapes(mesh: Mesh, vibration: Vibration) -> Iterator[PointField]:
+    """Damped modes where they are known, real ones elsewhere."""
+    vectors = vibration.modes.vectors.astype(complex)
+    good = vibration.damped.converged
+    vectors[vibration.damped.start[good]] = vibration.damped.vectors[good]
+    shapes = nodal_shapes(mesh, vibration.operators, vectors)
+    for name, shape in zip(vibration.naming.name, shapes, strict=True):
+        yield PointField("mode_shape", _on_solid(mesh, _scaled(shape)), name)
+
+
+def _scaled(shape: ComplexArray) -> ComplexArray:
+    """Largest displacement 1, and real there."""
+    largest = np.unravel_index(np.argmax(np.abs(shape)), shape.shape)
+    return np.asarray(shape / shape[largest])
+
+
+def _responses(mesh: Mesh, vibration: Vibration, sound: Sound) -> Iterator[PointField]:
+    """Response at the frequency of the sweep nearest to each damped mode."""
+    response = sound.response
+    assert response.solution is not None
+    band = response.frequency[0], response.frequency[-1]
+    inside = (vibration.damped.frequency >= band[0]) & (vibration.damped.frequency <= band[1])
+    for frequency in vibration.damped.frequency[inside]:
+        row = int(np.argmin(np.abs(response.frequency - frequency)))
+        solution = response.solution[row]
+        label = f"{response.frequency[row]:.2f} Hz"
+        (shape,) = nodal_shapes(mesh, vibration.operators, solution[None])
+        yield PointField("response", _on_solid(mesh, shape), label)
+        yield PointField(
+            "sound_pressure", _sound_pressure(mesh, vibration, response.omega[row], solution), label
+        )
+
+
+def _sound_pressure(
+    mesh: Mesh, vibration: Vibration, omega: float, solution: ComplexArray
+) -> ComplexArray:
+    operators, basis = vibration.operators, mesh.basis
+    potential = np.zeros(basis.ndof, dtype=complex)
+    psi = operators.blocks.psi
+    potential[operators.free[psi] - operators.first_potential] = solution[psi]
+    pressure = -1j * omega * operators.density * basis.to_values(potential)
+    pressure[~_nodes_in(mesh, "water")] = np.nan
+    return np.asarray(pressure)
+
+
+def _nodes_in(mesh: Mesh, *regions: str) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+    inside = np.zeros(len(mesh.nodes), dtype=bool)
+    for region in regions:
+        for block in mesh.cells.get(region, ()):
+            inside[block.connectivity] = True
+    return inside
+
+
+def _solid(mesh: Mesh) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+    return _nodes_in(mesh, "blade", "film")
+
+
+def _on_solid(mesh: Mesh, shape: ComplexArray) -> ComplexArray:
+    return np.asarray(np.where(_solid(mesh)[:, None], shape, np.nan))
+
+
+def _wetted(mesh: Mesh, pressure: FloatArray) -> FloatArray:
+    wetted = np.zeros(len(mesh.nodes), dtype=bool)
+    wetted[mesh.interface] = True
+    return np.where(wetted, pressure, np.nan)

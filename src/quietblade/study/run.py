@@ -1,0 +1,175 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The whole study of a case: the only place that knows the order of the stages."""
+
+import hashlib
+from itertools import chain
+from pathlib import Path
+
+import ngsolve as ngs
+
+from quietblade import __version__
+from quietblade.case import Case
+from quietblade.case.presets import PRESETS, preset_text
+from quietblade.errors import Notice
+from quietblade.flow.limits import Environment
+from quietblade.linalg import default_threads
+from quietblade.mesh import Mesh, build_mesh
+from quietblade.mesh.motion import MeshMotion, solve_mesh_motion
+from quietblade.results.files import ResultError
+from quietblade.results.model import Result
+from quietblade.results.store import RunFolder
+from quietblade.study import outcome, translate
+from quietblade.study.clock import Clock
+from quietblade.study.fields import write_static_fields, write_vibration_fields
+from quietblade.study.preflight import preflight
+from quietblade.study.statics import Statics, solve_statics
+from quietblade.study.vibration import Sound, Vibration, frequencies, solve_sound, solve_vibration
+from quietblade.typing import Progress, silent
+
+
+def run_key(case: Case) -> str:
+    """Key of a result: the content of the case and the version of the code."""
+    return hashlib.sha256(f"{case.content_key()} {__version__}".encode()).hexdigest()
+
+
+def finished(case: Case, folder: RunFolder) -> Result | None:
+    """Result of this very case, if the folder holds it whole."""
+    try:
+        result = folder.load()
+    except ResultError:
+        return None
+    return result if result.run.content_key == run_key(case) else None
+
+
+def run_case(case: Case, folder: RunFolder, progress: Progress = silent) -> Result:
+    """Compute a case and write everything into its folder.
+
+    Parameters
+    ----------
+    case : Case
+    folder : RunFolder
+        Made if need be; files of an earlier run are replaced.
+    progress : callable
+
+    Returns
+    -------
+    Result
+
+    Raises
+    ------
+    CaseError
+        The case cannot be.
+    QuietbladeError
+        A stage failed.
+    """
+    ngs.SetNumThreads(default_threads())
+    clock = Clock(progress)
+    facts = preflight(case)
+    folder.root.mkdir(parents=True, exist_ok=True)
+    with clock.stage("mesh"):
+        mesh = build_mesh(facts.blade, translate.mesh_spec(case))
+        _ = mesh.basis
+    with clock.stage("flow and structure") as report:
+        statics = solve_statics(case, facts.blade, mesh, report)
+    motions = _motions(case, mesh, statics, clock)
+    vibrations: dict[str, Vibration] = {}
+    for name, motion in motions.items():
+        with clock.stage(f"modes {name}") as report:
+            vibrations[name] = solve_vibration(case, facts.blade, mesh, statics, motion, report)
+    grid = frequencies(case, list(vibrations.values()))
+    sounds: dict[str, Sound] = {}
+    for name, vibration in vibrations.items():
+        with clock.stage(f"sweep {name}") as report:
+            sounds[name] = solve_sound(case, vibration, grid, report)
+    with clock.stage("files"):
+        write_static_fields(case, mesh, statics, folder)
+        for name, vibration in vibrations.items():
+            write_vibration_fields(mesh, vibration, sounds[name], folder)
+    notices = (
+        *facts.notices,
+        *mesh.notices,
+        *statics.notices(_environment(case)),
+        *chain.from_iterable(_step2_notices(motions[n], vibrations[n], sounds[n]) for n in motions),
+    )
+    reports = {
+        "flow and structure": statics.structure.solver.report(),
+        **{f"modes {name}": vibration.solver for name, vibration in vibrations.items()},
+        **{f"sweep {name}": sound.response.report for name, sound in sounds.items()},
+    }
+    others = {"C0": "C1", "C1": "C0"}
+    result = Result(
+        title=case.title,
+        blade=paper_blade(case),
+        static=outcome.static_result(statics),
+        configurations={
+            name: outcome.configuration_result(
+                case, vibration, sounds[name], vibrations.get(others[name])
+            )
+            for name, vibration in vibrations.items()
+        },
+        mesh=outcome.mesh_result(mesh, next(iter(vibrations.values()))),
+        run=outcome.run_record(
+            Path(case.file).read_text(encoding="utf-8"),
+            run_key(case),
+            clock.seconds,
+            reports,
+            notices,
+        ),
+    )
+    folder.save(result)
+    return result
+
+
+def paper_blade(case: Case) -> str:
+    """Which of the paper's blades a case stands for: shape, material and flow are those.
+
+    What the paper leaves open (film, excitation, mesh, sphere) may be anything.
+    """
+    for name in PRESETS:
+        family, _, blade = name.partition("-")
+        if family == "paper" and _stated(case) == _stated(Case.parse(preset_text(name))):
+            return blade
+    return ""
+
+
+def _stated(case: Case) -> tuple[object, ...]:
+    """What the paper says of its blades."""
+    plain = case.plain()
+    shape = {k: plain["blade"][k] for k in ("hub_radius", "span", "chord", "thickness", "camber")}
+    flow = plain["flow"]["speed"], plain["flow"]["rotation"]
+    return shape, flow, case.material("blade")
+
+
+def _motions(
+    case: Case, mesh: Mesh, statics: Statics, clock: Clock
+) -> dict[str, MeshMotion | None]:
+    """Mesh motion of each wanted configuration; none at rest."""
+    motions: dict[str, MeshMotion | None] = {}
+    for name in case.acoustics.configurations:
+        if name == "C0":
+            motions[name] = None
+            continue
+        with clock.stage("mesh motion"):
+            displacement = statics.state.displacement
+            motions[name] = solve_mesh_motion(mesh, displacement, case.acoustics.gap)
+    return motions
+
+
+def _environment(case: Case) -> Environment:
+    return Environment(
+        depth=case.flow.depth,
+        atmospheric_pressure=case.flow.atmospheric_pressure,
+        vapour_pressure=case.water.vapour_pressure,
+    )
+
+
+def _step2_notices(
+    motion: MeshMotion | None, vibration: Vibration, sound: Sound
+) -> tuple[Notice, ...]:
+    failures = sound.response.failures
+    failed = [
+        Notice(f"sweep {vibration.name}", f"no solution at {f:.6g} Hz: {why}")
+        for f, why in failures.items()
+    ]
+    moved = motion.notices if motion is not None else ()
+    return (*moved, *vibration.notices, *sound.multipoles.notices(), *failed)

@@ -1,0 +1,248 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Step 2 of a case: wet modes and sound of the blade about one configuration."""
+
+from dataclasses import dataclass
+
+import ngsolve as ngs
+import numpy as np
+from scipy.interpolate import make_interp_spline
+
+from quietblade.case import Case
+from quietblade.errors import Notice
+from quietblade.geometry import Blade
+from quietblade.linalg import Precision, SolverChain, SolverReport, make_solver
+from quietblade.mesh import Mesh
+from quietblade.mesh.motion import MeshMotion
+from quietblade.mesh.surface import SurfaceQuadrature
+from quietblade.propulsion.tangent import compute_tangent
+from quietblade.study import translate
+from quietblade.study.statics import Statics
+from quietblade.typing import AnyArray, FloatArray, Progress
+from quietblade.vibroacoustics.complex_modes import ComplexModes, complex_modes
+from quietblade.vibroacoustics.excitation import pressure_force
+from quietblade.vibroacoustics.grid import refined_grid
+from quietblade.vibroacoustics.modes import WetModes, wet_modes
+from quietblade.vibroacoustics.multipoles import Multipoles, SurfaceSources
+from quietblade.vibroacoustics.naming import Naming, name_modes
+from quietblade.vibroacoustics.operators import Operators, build_operators
+from quietblade.vibroacoustics.power import PowerBudget, power_budget
+from quietblade.vibroacoustics.sweep import Response, solve_response
+
+ABOVE_BAND = 1.2
+"""Wet modes are sought up to this multiple of the band's upper end, so that a mode that the
+static load moves into the band keeps its name."""
+
+FAST_SPIN = 0.05
+"""Ratio 2 omega_p / omega_1 beyond which the neglected Coriolis force is noticed."""
+
+
+@dataclass(frozen=True, eq=False)
+class Vibration:
+    """The linear problem about C0 or C1, and its modes.
+
+    Attributes
+    ----------
+    name : str
+        ``C0`` or ``C1``.
+    operators : Operators
+        Matrices of eq. (7).
+    load : (n,) float array
+        Right-hand side of the excitation [N].
+    area : float
+        Area of the excited patch in this configuration [m2].
+    sources : SurfaceSources
+        For the outgoing waves.
+    positions : (nodes, 3) float array
+        Nodes of the mesh in this configuration [m].
+    modes : WetModes
+        Real modes, also somewhat above the band.
+    naming : Naming
+        Their names.
+    damped : ComplexModes
+        Modes of the band with loss, compressibility and radiation.
+    solver : SolverReport
+        What the solvers did for the modes.
+    notices : tuple of Notice
+    """
+
+    name: str
+    operators: Operators
+    load: FloatArray
+    area: float
+    sources: SurfaceSources
+    positions: FloatArray
+    modes: WetModes
+    naming: Naming
+    damped: ComplexModes
+    solver: SolverReport
+    notices: tuple[Notice, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Sound:
+    """Response over frequency and where its power goes.
+
+    Attributes
+    ----------
+    response : Response
+        Solutions at the frequencies that could be solved, with residuals.
+    budget : PowerBudget
+        Injected, radiated and dissipated power [W].
+    multipoles : Multipoles
+        Outgoing waves by the Kirchhoff-Helmholtz integral.
+    """
+
+    response: Response
+    budget: PowerBudget
+    multipoles: Multipoles
+
+
+def solve_vibration(
+    case: Case,
+    blade: Blade,
+    mesh: Mesh,
+    statics: Statics,
+    motion: MeshMotion | None,
+    progress: Progress,
+) -> Vibration:
+    """Set up the linear problem about C0 (no motion) or C1, and find its modes."""
+    name = "C0" if motion is None else "C1"
+    state = statics.structure.rest() if motion is None else statics.state.structure
+    tangent = compute_tangent(statics.structure, state)
+    field = None if motion is None else _field(mesh, motion)
+    with ngs.TaskManager():
+        operators = build_operators(
+            mesh.fem,
+            stiffness=tangent.stiffness(case.acoustics.tangent),
+            loss={"film": tangent.loss(case.acoustics.loss)},
+            mass=tangent.mass,
+            water=translate.water(case),
+            radius=mesh.radius,
+            motion=field,
+            condition=translate.radiation(case),
+        )
+        force = pressure_force(mesh.fem, case.excitation.pressure, motion=field)
+        sources = SurfaceSources.of(mesh.fem, mesh.basis, operators, motion=field)
+    positions = mesh.nodes if motion is None else mesh.nodes + motion.displacement
+    progress(name, 0.2, "matrices assembled")
+    exact = _solver(case, precision="double")
+    low, high = case.acoustics.band
+    modes = wet_modes(operators, ABOVE_BAND * high, solver=exact, progress=progress)
+    progress(name, 0.6, f"{len(modes.frequency)} wet modes")
+    naming = _name(blade, mesh, operators, modes, statics if motion is not None else None)
+    reach = (low / 1.02, high * 1.02)
+    damped = complex_modes(operators, modes, reach, solver=_solver(case), progress=progress)
+    return Vibration(
+        name=name,
+        operators=operators,
+        load=operators.right_hand_side(force),
+        area=_area(mesh, positions),
+        sources=sources,
+        positions=positions,
+        modes=modes,
+        naming=naming,
+        damped=damped,
+        solver=exact.report(),
+        notices=(
+            *modes.notices,
+            *damped.notices,
+            *_coriolis(case, modes),
+        ),
+    )
+
+
+def frequencies(case: Case, vibrations: list[Vibration]) -> FloatArray:
+    """Frequencies of the sweep [Hz], refined around the modes of all configurations."""
+    damped = [vibration.damped for vibration in vibrations]
+    modes = (
+        np.concatenate([d.frequency for d in damped]),
+        np.concatenate([d.loss_factor for d in damped]),
+    )
+    if case.acoustics.points_per_mode == 0:
+        return refined_grid(case.acoustics.band, case.acoustics.step)
+    return refined_grid(
+        case.acoustics.band, case.acoustics.step, modes, case.acoustics.points_per_mode
+    )
+
+
+def solve_sound(
+    case: Case, vibration: Vibration, frequency: FloatArray, progress: Progress
+) -> Sound:
+    """Sweep the band with a direct solve at each frequency, and find the powers."""
+    operators = vibration.operators
+    response = solve_response(
+        operators, frequency, vibration.load, solver=_solver(case), progress=progress
+    )
+    assert response.solution is not None  # nothing observed: the solutions are kept
+    budget = power_budget(operators, response.omega, response.solution, vibration.load)
+    multipoles = vibration.sources.multipoles(response.omega, response.solution)
+    return Sound(response, budget, multipoles)
+
+
+def _solver(case: Case, *, precision: Precision | None = None) -> SolverChain:
+    return make_solver(
+        case.solver.name,
+        precision=precision or case.solver.precision,
+        tolerance=case.solver.tolerance,
+    )
+
+
+def _field(mesh: Mesh, motion: MeshMotion) -> ngs.GridFunction:
+    field = ngs.GridFunction(ngs.VectorH1(mesh.fem, order=2))
+    field.vec.FV().NumPy()[:] = mesh.basis.to_dofs(motion.displacement)
+    return field
+
+
+def nodal_shapes(mesh: Mesh, operators: Operators, vectors: AnyArray) -> AnyArray:
+    """Displacement of all nodes, (m, nodes, 3), from vectors (m, n) of free unknowns."""
+    full = np.zeros((len(vectors), 3 * mesh.basis.ndof), dtype=vectors.dtype)
+    full[:, operators.free[operators.blocks.u]] = vectors[:, operators.blocks.u]
+    return np.array([mesh.basis.to_values(row) for row in full])
+
+
+def _name(
+    blade: Blade, mesh: Mesh, operators: Operators, modes: WetModes, statics: Statics | None
+) -> Naming:
+    """Name modes by the motion of the sections, in the axes of the (deformed) sections."""
+    solid = mesh.basis.nodes_of("|".join(name for name in mesh.cells if name != "water"))
+    s, xi, _ = blade.locate(mesh.nodes[solid])
+    if statics is None:
+        _, chordwise, normal = blade.frame(s)
+        axes = np.stack([chordwise, normal, np.cross(chordwise, normal)], axis=1)
+    else:
+        sections = statics.state.coupled.sections
+        frames = np.stack([sections.chord_direction, sections.normal, sections.tangent], axis=1)
+        stations = np.linspace(0.0, 1.0, len(frames))
+        axes = make_interp_spline(stations, frames, k=1)(np.clip(s, 0.0, 1.0))
+    shapes = nodal_shapes(mesh, operators, modes.vectors)[:, solid]
+    local = np.einsum("nai,mni->mna", axes, shapes)
+    return name_modes(s, xi, local, _nodal_masses(mesh, operators)[solid])
+
+
+def _nodal_masses(mesh: Mesh, operators: Operators) -> FloatArray:
+    """Mass that each node stands for, up to a common factor: the diagonal of the nodal matrix.
+
+    Of the motion along the span, which the clamped root and the water do not touch elsewhere.
+    """
+    u, basis = operators.blocks.u, mesh.basis
+    mass = operators.terms["M"][u][:, u]
+    last = operators.free[u] - 2 * basis.ndof
+    kept = np.flatnonzero(last >= 0)
+    to_unknowns = basis.interpolation[last[kept]]
+    inertia = mass[kept][:, kept] @ to_unknowns
+    return np.asarray(to_unknowns.multiply(inertia).sum(axis=0)).ravel()
+
+
+def _area(mesh: Mesh, positions: FloatArray) -> float:
+    surface = SurfaceQuadrature(mesh.nodes, mesh.faces["excited"])
+    return float(np.linalg.norm(surface.area_vectors(positions), axis=-1).sum())
+
+
+def _coriolis(case: Case, modes: WetModes) -> tuple[Notice, ...]:
+    if len(modes.frequency) == 0 or modes.frequency[0] <= 0.0:
+        return ()
+    ratio = 2.0 * case.flow.rotation / (2.0 * np.pi * modes.frequency[0])
+    if ratio <= FAST_SPIN:
+        return ()
+    remedy = "The modes of a blade that spins this fast need the Coriolis force"
+    return (Notice("modes", "2 omega_p / omega_1 is not small", ratio, FAST_SPIN, remedy),)

@@ -1,0 +1,158 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""From words to physics: the same numbers arrive, and estimates are right."""
+
+from dataclasses import replace
+from math import pi, radians
+from typing import Any
+
+import ngsolve as ngs
+import numpy as np
+import pytest
+from netgen.csg import unit_cube
+
+from quietblade.case import Case
+from quietblade.case.library import NAMES
+from quietblade.case.presets import preset_text
+from quietblade.materials import LIBRARY, IsotropicSVK, MooneyRivlin, OrthotropicSVK
+from quietblade.materials.axes import as_coefficient, ply_axes, section_directions
+from quietblade.study import translate
+from quietblade.study.preflight import bending_wavelength, preflight
+
+
+def preset(name: str) -> Case:
+    return Case.parse(preset_text(name), f"{name}.toml")
+
+
+def test_blade_and_film() -> None:
+    blade = translate.build_blade(preset("paper-aluminium"))
+    s = np.array([0.0, 0.5, 1.0])
+    assert blade.chord(s) == pytest.approx([0.25, 0.1625, 0.075])
+    assert blade.radius(s) == pytest.approx([0.2, 0.7, 1.2])
+    assert blade.film is not None
+    assert blade.film.thickness == 1.5e-3
+
+
+def test_twisted_blade() -> None:
+    blade = translate.build_blade(preset("twisted"))
+    assert np.degrees(blade.blade_angle(np.array([0.0, 1.0]))) == pytest.approx([-18.7, -53.1])
+    assert blade.sweep(np.array([0.5])) == pytest.approx([0.015])
+    assert blade.camber(np.array([0.5])) == pytest.approx([0.015])
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_library_of_the_case_is_the_library_of_materials(name: str) -> None:
+    part = "film" if name == "viscoelastic-paper" else "blade"
+    case = preset("paper-aluminium").varied({f"{part}.material": name})
+    made, wanted = translate.build_materials(case)[part], LIBRARY[name].material
+    if isinstance(made, OrthotropicSVK):
+        span = ply_axes(radians(45.0), *section_directions(0.0))
+        assert isinstance(span, np.ndarray)
+        assert np.asarray(made.axes) == pytest.approx(span)
+        made, wanted = (replace(m, axes=np.eye(3)) for m in (made, wanted))
+        assert all(getattr(made, k) == getattr(wanted, k) for k in made.__dict__ if k != "axes")
+    else:
+        assert made == wanted
+
+
+def test_materials_of_the_paper() -> None:
+    materials = translate.build_materials(preset("paper-aluminium"))
+    assert materials["blade"] == IsotropicSVK("aluminium", 2500.0, 65e9, 0.36)
+    assert materials["film"] == MooneyRivlin("polymer", 1400.0, 0.238e6, 0.523e6, 2.2e9, 0.21)
+
+
+def test_fibres_follow_the_twist() -> None:
+    case = preset("twisted").varied(
+        {"blade.material": "woven-carbon-paper", "blade.hub_radius": "0 mm", "blade.span": "1 m"}
+    )
+    made = translate.build_materials(case)["blade"]
+    assert isinstance(made, OrthotropicSVK)
+    mesh = ngs.Mesh(unit_cube.GenerateMesh(maxh=1.0))
+    field = as_coefficient(made.axes)
+    angle = translate.span_function(case.blade.blade_angle)
+    for z in (0.0, 0.123, 0.5, 0.871, 1.0):
+        here = float(angle(np.array([z]))[0])
+        wanted = ply_axes(radians(45.0), *section_directions(here))
+        assert np.reshape(field(mesh(0.3, 0.3, z)), (3, 3)) == pytest.approx(wanted, abs=1e-5)
+
+
+def test_blade_angle_field_reaches_a_little_beyond_the_ends() -> None:
+    case = preset("twisted").varied({"blade.hub_radius": "1e-4 mm", "blade.span": "0.9999999 m"})
+    field = translate.blade_angle_field(case)
+    mesh = ngs.Mesh(unit_cube.GenerateMesh(maxh=1.0))
+    assert field(mesh(0.2, 0.2, 0.0)) == pytest.approx(radians(-18.7), abs=1e-6)
+    assert field(mesh(0.2, 0.2, 1.0)) == pytest.approx(radians(-53.1), abs=1e-6)
+
+
+def test_the_rest_arrives() -> None:
+    case = preset("twisted").varied({"excitation.side": "lower", "mesh.water_size": "0.3 m"})
+    spec = translate.mesh_spec(case)
+    assert spec.size == 0.025
+    assert spec.water_size == 0.3
+    assert spec.centre == pytest.approx((0.0, 0.0, 0.7))
+    assert (spec.patch.side, spec.patch.span) == (-1, (0.85, 0.95))
+    inflow = translate.inflow(case)
+    assert (inflow.speed, inflow.density) == (5.0, 1025.0)
+    assert inflow.rotation == pytest.approx(2 * pi)
+    assert translate.spin(case).omega == inflow.rotation
+    assert translate.water(case).sound_speed == 1500.0
+    assert translate.radiation(case).name
+    moved = case.varied({"acoustics.sphere_centre": ["0.1 m", "0 m", "0.6 m"]})
+    assert translate.mesh_spec(moved).centre == (0.1, 0.0, 0.6)
+
+
+@pytest.mark.parametrize(
+    ("band", "step", "count"),
+    [(("100 Hz", "200 Hz"), "2.5 Hz", 41), (("100 Hz", "200 Hz"), "30 Hz", 4)],
+)
+def test_base_frequencies(band: Any, step: str, count: int) -> None:
+    case = preset("paper-aluminium").varied({"acoustics.band": list(band), "acoustics.step": step})
+    frequencies = translate.base_frequencies(case)
+    assert len(frequencies) == count
+    assert (frequencies[0], frequencies[-1]) == (100.0, 200.0)
+
+
+def test_numbers_of_the_paper() -> None:
+    known = preflight(preset("paper-aluminium"))
+    # atan(0.58 * 1.2 / 5) is the paper's "8 degrees at the tip"
+    assert np.degrees(known.incidence) == pytest.approx([1.329, 7.925], abs=1e-3)
+    assert known.kr == pytest.approx([2 * pi * 100 / 1500 * 1.3, 2 * pi * 200 / 1500 * 1.3])
+    assert known.acoustic_wavelength == pytest.approx(7.5)
+    assert [notice.where for notice in known.notices] == ["acoustics.radiation"]
+
+
+def test_bending_wavelength_solves_its_dispersion_relation() -> None:
+    case = preset("paper-aluminium")
+    blade = translate.build_blade(case)
+    k = 2 * pi / bending_wavelength(case, blade, 150.0)
+    # mean thickness: area of the section by the shoelace formula, over its chord
+    xy = blade.section(np.array([0.5]), 2001)[0]
+    x, y = xy[:, 0], xy[:, 1]
+    height = 0.5 * abs(float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))) / 0.1625
+    left = 65e9 * height**3 / 12 * k**4
+    right = (2 * pi * 150.0) ** 2 * (2500.0 * height + 2 * 1000.0 / k)
+    assert left == pytest.approx(right, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("changes", "where", "fragment"),
+    [
+        ({"mesh.size": "120 mm"}, "mesh.size", "few elements per bending wavelength"),
+        ({"mesh.water_size": "1.3 m"}, "mesh.water_size", "per acoustic wavelength"),
+        ({"blade.material": "aluminium-paper"}, "materials.aluminium", "not used"),
+        ({"materials.aluminium.E": "65 mPa"}, "blade.material", "very soft"),
+        ({"materials.polymer.c10": "0 Pa", "materials.polymer.c01": "3 mPa"}, "film.material",
+         "very soft"),
+    ],
+)  # fmt: skip
+def test_notices(changes: dict[str, Any], where: str, fragment: str) -> None:
+    notices = preflight(preset("paper-aluminium").varied(changes)).notices
+    (found,) = [notice for notice in notices if notice.where == where]
+    assert fragment in found.message
+    assert found.remedy
+
+
+def test_a_large_sphere_has_no_notice() -> None:
+    case = preset("paper-aluminium").varied({"acoustics.sphere_radius": "8 m"})
+    assert preflight(case).notices == ()
+    assert translate.water_size(case) == 1.25  # a sixth of the shortest wavelength
+    assert translate.water_size(preset("paper-aluminium")) == 0.325  # a quarter of the radius

@@ -1,0 +1,192 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The command line: help, new and check; exit codes and what is shown where."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from quietblade.case.presets import PRESETS, preset_text
+from quietblade.cli.common import ExitCode, show_error
+from quietblade.cli.main import COMMANDS, execute
+from quietblade.errors import CaseError, ConvergenceError, MeshError
+
+HEAVY = ("numpy", "scipy", "pydantic", "pint", "ngsolve", "gmsh", "matplotlib", "pyvista", "xarray")
+
+
+@pytest.fixture(autouse=True)
+def _in_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+def imported_by(*arguments: str) -> set[str]:
+    """Top-level modules that a command imports, in a process of its own."""
+    code = (
+        "import sys; from quietblade.cli.main import execute; execute(sys.argv[1:]); "
+        "sys.stderr.write(' '.join({m.split('.')[0] for m in sys.modules}))"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code, *arguments], capture_output=True, text=True, check=True
+    )
+    return set(done.stderr.split())
+
+
+def test_help_is_light() -> None:
+    found = imported_by("--help")
+    assert "typer" in found
+    assert not found.intersection(HEAVY)
+
+
+def test_help_takes_less_than_half_a_second_of_work() -> None:
+    def work() -> float:
+        before = os.times()
+        subprocess.run(
+            [sys.executable, "-m", "quietblade.cli.main", "--help"], capture_output=True, check=True
+        )
+        after = os.times()
+        return (after.children_user + after.children_system) - (
+            before.children_user + before.children_system
+        )
+
+    assert min(work() for _ in range(3)) < 0.5
+
+
+def test_check_needs_no_mesher_and_no_finite_elements() -> None:
+    assert execute(["new", "blade"]) == ExitCode.DONE
+    found = imported_by("check", "blade.toml")
+    assert "pydantic" in found
+    assert not found.intersection(("ngsolve", "gmsh", "netgen", "pyvista", "matplotlib"))
+
+
+def test_a_wrong_case_ends_before_the_geometry_is_imported(tmp_path: Path) -> None:
+    (tmp_path / "blade.toml").write_text("[blade]\nspan = 1\n")
+    assert not imported_by("check", "blade.toml").intersection(("scipy", "ngsolve", "gmsh"))
+
+
+def test_help_lists_the_commands_that_are_there(capsys: pytest.CaptureFixture[str]) -> None:
+    assert execute([]) == ExitCode.DONE
+    shown = capsys.readouterr().out
+    assert "quietblade" in shown
+    for name in ("new", "check"):
+        assert name in shown
+        assert name in COMMANDS
+
+
+@pytest.mark.parametrize("preset", PRESETS)
+def test_new_then_check(preset: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert execute(["new", "mine", "--preset", preset]) == ExitCode.DONE
+    assert "quietblade check mine.toml" in capsys.readouterr().out
+    assert Path("mine.toml").read_text(encoding="utf-8") == preset_text(preset)
+    assert execute(["check", "mine.toml"]) == ExitCode.DONE
+    seen = capsys.readouterr()
+    for fragment in ("kR = ", "elements per wavelength", "film", "mm", "Hz"):
+        assert fragment in seen.out
+    assert "notice acoustics.radiation" in seen.err
+
+
+def test_new_does_not_replace_a_file_unasked(capsys: pytest.CaptureFixture[str]) -> None:
+    Path("mine.toml").write_text("mine")
+    assert execute(["new", "mine.toml"]) == ExitCode.CASE_WRONG
+    assert "exists already" in capsys.readouterr().err
+    assert Path("mine.toml").read_text() == "mine"
+    assert execute(["new", "mine.toml", "--force"]) == ExitCode.DONE
+    assert Path("mine.toml").read_text(encoding="utf-8") == preset_text("paper-aluminium")
+
+
+def test_new_with_an_unknown_preset(capsys: pytest.CaptureFixture[str]) -> None:
+    assert execute(["new", "mine", "--preset", "paper-aluminum"]) == ExitCode.CASE_WRONG
+    assert 'Did you mean "paper-aluminium"?' in capsys.readouterr().err
+    assert not Path("mine.toml").exists()
+
+
+def test_presets_are_named_in_the_help(capsys: pytest.CaptureFixture[str]) -> None:
+    assert execute(["new", "--help"]) == ExitCode.DONE
+    shown = capsys.readouterr().out
+    assert all(name in shown for name in PRESETS)
+
+
+def test_new_in_a_place_that_cannot_be_written(capsys: pytest.CaptureFixture[str]) -> None:
+    Path("file").write_text("")
+    assert execute(["new", "file/mine"]) == ExitCode.CASE_WRONG
+    assert "cannot be written" in capsys.readouterr().err
+
+
+def test_check_lists_all_problems(capsys: pytest.CaptureFixture[str]) -> None:
+    text = preset_text("paper-aluminium")
+    text = text.replace('span = "1 m"', "span = 1").replace('"25 mm"', '"25 kg"')
+    Path("mine.toml").write_text(text, encoding="utf-8")
+    assert execute(["check", "mine.toml"]) == ExitCode.CASE_WRONG
+    seen = capsys.readouterr()
+    assert seen.out == ""
+    rows = seen.err.splitlines()
+    assert rows[0] == "2 problems"
+    line = 1 + text.splitlines().index("span = 1")
+    assert rows[1].startswith(f"error mine.toml:{line}: blade.span = 1: a bare number where")
+    assert 'mesh.size = "25 kg"' in rows[2]
+
+
+def test_brackets_in_a_message_are_shown(capsys: pytest.CaptureFixture[str]) -> None:
+    Path("mine.toml").write_text("[blade]\n")
+    assert execute(["check", "mine.toml"]) == ExitCode.CASE_WRONG
+    assert "Add [mesh] with size" in capsys.readouterr().err
+
+
+def test_film_that_does_not_fit(capsys: pytest.CaptureFixture[str]) -> None:
+    text = preset_text("paper-aluminium").replace('"1.5 mm"', '"3 mm"')
+    Path("mine.toml").write_text(text, encoding="utf-8")
+    assert execute(["check", "mine.toml"]) == ExitCode.CASE_WRONG
+    shown = capsys.readouterr().err
+    assert 'film.thickness = "3 mm": it sticks out' in shown
+    assert "by 0.243 mm" in shown
+
+
+def test_check_as_json(capsys: pytest.CaptureFixture[str]) -> None:
+    execute(["new", "mine"])
+    capsys.readouterr()
+    assert execute(["check", "mine.toml", "--json"]) == ExitCode.DONE
+    data = json.loads(capsys.readouterr().out)
+    assert data["valid"]
+    assert data["case"]["blade"]["span"] == 1.0
+    assert data["derived"]["kr"] == pytest.approx([0.5445, 1.0891], abs=1e-4)
+    assert data["notices"][0]["where"] == "acoustics.radiation"
+
+
+def test_check_of_a_wrong_case_as_json(capsys: pytest.CaptureFixture[str]) -> None:
+    Path("mine.toml").write_text(preset_text("twisted").replace('"60 rpm"', '"60 Hz"'))
+    assert execute(["check", "mine.toml", "--json"]) == ExitCode.CASE_WRONG
+    data = json.loads(capsys.readouterr().out)
+    assert not data["valid"]
+    (problem,) = data["problems"]
+    assert (problem["key"], problem["value"]) == ("flow.rotation", '"60 Hz"')
+
+
+@pytest.mark.parametrize(
+    ("arguments", "fragment"),
+    [
+        (["chek", "mine.toml"], 'Did you mean "check"?'),
+        (["check"], "Missing argument"),
+        (["check", "no.toml"], "there is no such file"),
+        (["new", "x", "--prest", "twisted"], "--preset"),
+    ],
+)
+def test_wrong_commands(
+    arguments: list[str], fragment: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert execute(arguments) == ExitCode.CASE_WRONG
+    assert fragment in capsys.readouterr().err
+
+
+def test_version(capsys: pytest.CaptureFixture[str]) -> None:
+    assert execute(["--version"]) == ExitCode.DONE
+    assert capsys.readouterr().out.startswith("quietblade 0.")
+
+
+def test_exit_codes_of_errors(capsys: pytest.CaptureFixture[str]) -> None:
+    assert show_error(CaseError("wrong")) == ExitCode.CASE_WRONG
+    assert show_error(MeshError("inverted")) == ExitCode.FAILED
+    assert show_error(ConvergenceError("no solution")) == ExitCode.FAILED
+    assert [int(code) for code in ExitCode] == [0, 1, 2, 3]
+    assert "error inverted" in capsys.readouterr().err
