@@ -13,6 +13,7 @@ import numpy as np
 
 from quietblade.errors import Notice
 from quietblade.flow.inflow import BladeFlow, Inflow, strip_loads
+from quietblade.propulsion.newton import NewtonStep
 from quietblade.propulsion.structure import EquilibriumError, Structure, StructureState
 from quietblade.propulsion.transfer import LoadTransfer, SurfacePressure
 from quietblade.typing import FloatArray, Progress, silent
@@ -36,8 +37,8 @@ class CouplingStep:
         Displacement of the tip section's mid-chord point [m].
     lift : float
         Lift of F(u^{k-1}), the load of this pass [N].
-    newton_iterations : int
-        Iterations of the structural solution.
+    newton : tuple of NewtonStep
+        Convergence table of the structural solution.
     seconds : float
         Wall time of the pass.
     """
@@ -47,14 +48,14 @@ class CouplingStep:
     rate: float
     tip: FloatArray
     lift: float
-    newton_iterations: int
+    newton: tuple[NewtonStep, ...]
     seconds: float
 
     def __str__(self) -> str:
         return (
             f"iteration {self.iteration}: change {self.change:.2e}, rate {self.rate:.2f}, "
             f"tip y {self.tip[1] * 1e3:.2f} mm, lift {self.lift:.1f} N, "
-            f"{self.newton_iterations} Newton iterations"
+            f"{len(self.newton)} Newton iterations"
         )
 
 
@@ -106,6 +107,7 @@ def solve_static(
     *,
     tolerance: float = 1e-5,
     max_iterations: int = 40,
+    newton_tolerance: float = 1e-8,
     progress: Progress = silent,
 ) -> StaticState:
     """Find the deformed blade by the paper's fixed point.
@@ -122,6 +124,8 @@ def solve_static(
         Largest relative change of the displacement in the last pass.
     max_iterations : int
         Largest number of passes; beyond it the state is returned, marked as not converged.
+    newton_tolerance : float
+        Of each structural solution, see `Structure.solve`.
     progress : callable
 
     Returns
@@ -144,7 +148,9 @@ def solve_static(
         flow = flows[-1]
         surface = transfer.pressure(flow.sections, flow.loads, displacement)
         try:
-            state = structure.solve(surface.values, state, progress=progress)
+            state = structure.solve(
+                surface.values, state, tolerance=newton_tolerance, progress=progress
+            )
         except EquilibriumError as error:
             if iteration == 1:
                 raise
@@ -161,7 +167,7 @@ def solve_static(
                 rate=change / history[-1].change if iteration > 2 else np.nan,
                 tip=flows[-1].sections.reference[-1] - flows[0].sections.reference[-1],
                 lift=flow.total.lift,
-                newton_iterations=len(state.newton),
+                newton=state.newton,
                 seconds=perf_counter() - start,
             )
         )

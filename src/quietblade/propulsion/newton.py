@@ -1,0 +1,156 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Newton's method with a kept tangent near the solution, and its convergence table."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from quietblade.errors import SolverError
+from quietblade.typing import FloatArray
+
+MAX_ITERATIONS = 20
+
+# Below this relative increment the tangent is kept: the error then falls by a steady factor an
+# iteration, for the price of a residual and a solve instead of a factorisation.
+_KEEP_BELOW = 1e-3
+
+# A kept tangent that contracts worse than this is replaced.
+_POOR_CONTRACTION = 0.05
+
+# Increments above this size have to shrink from one iteration to the next.
+_MUST_SHRINK_ABOVE = 1e-2
+
+Solve = Callable[[FloatArray], FloatArray]
+
+
+@dataclass(frozen=True)
+class NewtonStep:
+    """A line of the convergence table.
+
+    Attributes
+    ----------
+    fraction : float
+        Fraction of the way from the start's load to the wanted load.
+    iteration : int
+        Iteration at this load, from 0.
+    residual : float
+        Relative residual before the correction.
+    increment : float
+        Correction relative to the displacement; NaN in a line that only checks.
+    new_tangent : bool
+        Whether the tangent was assembled and factorised for it.
+    """
+
+    fraction: float
+    iteration: int
+    residual: float
+    increment: float
+    new_tangent: bool
+
+    def __str__(self) -> str:
+        mark = "*" if self.new_tangent else " "
+        return (
+            f"load {self.fraction:7.4f}  iteration {self.iteration:2d}{mark} "
+            f"residual {self.residual:8.2e}  increment {self.increment:8.2e}"
+        )
+
+
+class Problem(Protocol):
+    """Equilibrium at a fixed load, as Newton's method sees it."""
+
+    def residual(self, x: FloatArray) -> tuple[FloatArray, float]:
+        """Residual of the free unknowns, and its relative size; zero if there is no force."""
+
+    def tangent(self, x: FloatArray) -> Solve:
+        """Solver of the linear system at x."""
+
+    def correct(self, x: FloatArray, step: FloatArray) -> tuple[FloatArray, float]:
+        """Corrected x, and the size of the correction relative to the displacement."""
+
+
+@dataclass(frozen=True, eq=False)
+class Outcome:
+    """End of Newton's method at one load.
+
+    Attributes
+    ----------
+    x : (ndof,) float array
+        Last iterate.
+    converged : bool
+        Whether the tolerances are met.
+    steps : tuple of NewtonStep
+        Convergence table.
+    solve : callable or None
+        Solver of the last tangent, after convergence.
+    reason : str
+        Why it did not converge.
+    """
+
+    x: FloatArray
+    converged: bool
+    steps: tuple[NewtonStep, ...]
+    solve: Solve | None = None
+    reason: str = ""
+
+
+def solve_newton(
+    problem: Problem,
+    x: FloatArray,
+    fraction: float,
+    *,
+    residual_tolerance: float,
+    increment_tolerance: float,
+    solve: Solve | None = None,
+) -> Outcome:
+    """Iterate until the relative residual and the last relative increment are small.
+
+    Parameters
+    ----------
+    problem : Problem
+        Equilibrium at the load.
+    x : (ndof,) float array
+        First guess.
+    fraction : float
+        Fraction of the load path, for the table.
+    residual_tolerance, increment_tolerance : float
+        Largest relative residual, and largest relative increment before it.
+    solve : callable or None
+        Solver of a tangent near x, if there is one, for the first correction.
+
+    Returns
+    -------
+    Outcome
+        Not converged if a residual is not finite, large increments do not shrink, a linear system
+        cannot be solved, or the iterations are used up.
+    """
+    steps: list[NewtonStep] = []
+    last = before = np.inf
+    for iteration in range(MAX_ITERATIONS + 1):
+        force, residual = problem.residual(x)
+        settled = residual == 0.0 or (
+            residual <= residual_tolerance and last <= increment_tolerance
+        )
+        if settled or not np.isfinite(residual) or iteration == MAX_ITERATIONS:
+            steps.append(NewtonStep(fraction, iteration, residual, np.nan, False))
+            if settled:
+                return Outcome(x, True, tuple(steps), solve)
+            reason = "the iterations are used up"
+            if not np.isfinite(residual):
+                reason = "an element is turned inside out: the residual is not finite"
+            return Outcome(x, False, tuple(steps), reason=reason)
+        near = last < _KEEP_BELOW and last < _POOR_CONTRACTION * before
+        new_tangent = solve is None or not (near or iteration == 0)
+        try:
+            if solve is None or new_tangent:
+                solve = problem.tangent(x)
+            step = solve(force)
+        except SolverError as error:
+            return Outcome(x, False, tuple(steps), reason=str(error))
+        x, increment = problem.correct(x, step)
+        steps.append(NewtonStep(fraction, iteration, residual, increment, new_tangent))
+        before, last = last, increment
+        if not np.isfinite(last) or last > max(before, _MUST_SHRINK_ABOVE):
+            break
+    return Outcome(x, False, tuple(steps), reason="the increments grow")
