@@ -1,0 +1,225 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Outgoing multipoles from the motion and the pressure of the closed wetted surface.
+
+The Kirchhoff-Helmholtz (Green) integral of a field against a regular wave vanishes for everything
+that comes in from outside the surface.  It therefore sees the outgoing waves only, and not those
+that an approximate condition on the outer sphere sends back: a second, independent way to the
+power (theory: S2-9).
+"""
+
+from dataclasses import dataclass
+from math import isqrt
+from typing import Self
+
+import ngsolve as ngs
+import numpy as np
+from scipy.sparse import coo_array, csr_matrix
+
+from quietblade.errors import Notice
+from quietblade.mesh.nodal import NodalBasis
+from quietblade.typing import AnyArray, ComplexArray, FloatArray, IntArray
+from quietblade.vibroacoustics.fluid import Water, coupling_matrix
+from quietblade.vibroacoustics.harmonics import radial_factors, solid_harmonics
+from quietblade.vibroacoustics.operators import Operators, product_space
+
+CLOSED_SURFACE = "wet|excited|root"
+
+
+@dataclass(frozen=True)
+class Multipoles:
+    """Amplitudes of the outgoing waves psi = sum a_lm h_l(k r) Y_lm, h_l of the second kind.
+
+    Attributes
+    ----------
+    center : (3,) array
+        Where the spherical waves come from [m].
+    omega : (f,) array
+        Angular frequencies [rad/s].
+    amplitudes : (f, (degree + 1)^2) complex array
+        a_lm, real orthonormal harmonics, l = 0..degree and m = -l..l inside [m2/s].
+    water : Water
+    tail : (f,) array
+        Share of the two last degrees in the power: what the cut-off may have left out.
+    """
+
+    center: FloatArray
+    omega: FloatArray
+    amplitudes: ComplexArray
+    water: Water
+    tail: FloatArray
+
+    @property
+    def degree(self) -> int:
+        """Highest degree kept."""
+        return isqrt(self.amplitudes.shape[-1]) - 1
+
+    @property
+    def power_by_degree(self) -> FloatArray:
+        """Power of each degree, (f, degree + 1) [W]: rho c / 2 times the sum of |a_lm|^2."""
+        water = self.water
+        each = 0.5 * water.density * water.sound_speed * np.abs(self.amplitudes) ** 2
+        starts = np.arange(self.degree + 1) ** 2
+        return np.asarray(np.add.reduceat(each, starts, axis=-1))
+
+    @property
+    def power(self) -> FloatArray:
+        """Radiated power (f,) [W]."""
+        return np.asarray(self.power_by_degree.sum(axis=-1))
+
+    def far_field(self, directions: FloatArray) -> ComplexArray:
+        """Far pressure times distance, p r exp(i k r) for r to infinity [Pa m].
+
+        Parameters
+        ----------
+        directions : (d, 3) array
+            Unit vectors from the centre.
+
+        Returns
+        -------
+        (f, d) complex array
+            rho c times the sum of i^l a_lm Y_lm.
+        """
+        pressure = np.zeros((len(self.omega), len(directions)), dtype=np.complex128)
+        for degree in range(self.degree + 1):
+            harmonics, _ = solid_harmonics(directions, degree)
+            part = self.amplitudes[:, degree**2 : (degree + 1) ** 2]
+            pressure += 1j**degree * (part @ harmonics)
+        return self.water.density * self.water.sound_speed * pressure
+
+    def notices(self, limit: float = 1e-2) -> list[Notice]:
+        """Says where the sum over degrees has not converged."""
+        worst = int(np.argmax(self.tail))
+        if self.tail[worst] <= limit:
+            return []
+        return [
+            Notice(
+                f"multipoles at {self.omega[worst] / (2.0 * np.pi):.4g} Hz",
+                f"the power of degrees {self.degree - 1} and {self.degree} is not negligible",
+                float(self.tail[worst]),
+                limit,
+                "raise the highest degree",
+            )
+        ]
+
+
+@dataclass(frozen=True)
+class SurfaceSources:
+    """Nodal weights of the velocity and of the potential on the closed wetted surface.
+
+    Attributes
+    ----------
+    points : (m, 3) array
+        Nodes of the surface in the configuration [m].
+    center : (3,) array
+        Centre of the spherical waves [m].
+    flux : (m, n) csr_matrix
+        int N_i (u . n) of the free unknowns, for the nodal shape functions N_i [m2].
+    doublet : three (m, n) csr_matrix
+        int N_i n_x psi, and for y and z [m2].
+    water : Water
+    """
+
+    points: FloatArray
+    center: FloatArray
+    flux: csr_matrix
+    doublet: tuple[csr_matrix, csr_matrix, csr_matrix]
+    water: Water
+
+    @classmethod
+    def of(
+        cls,
+        fem: ngs.Mesh,
+        basis: NodalBasis,
+        operators: Operators,
+        *,
+        motion: ngs.GridFunction | None = None,
+        surface: str = CLOSED_SURFACE,
+        center: FloatArray | None = None,
+    ) -> Self:
+        """Integrate the sources over the closed surface.
+
+        Parameters
+        ----------
+        operators : Operators
+            Of the same configuration: gives the water and the numbering of the free unknowns.
+        motion : ngsolve.GridFunction or None
+            Displacement of the mesh from C0 to C1 [m].
+        surface : str
+            Name pattern of *all* faces between water and solid: also the clamped root, which does
+            not move but reflects.
+        center : (3,) array or None
+            None takes the middle of the surface's bounding box; the power does not depend on it,
+            the number of degrees does.
+        """
+        water = Water(operators.density, operators.sound_speed)
+        nodes = basis.nodes_of(surface, codimension=1)
+        points = basis.points[nodes]
+        if motion is not None:
+            points = points + basis.to_values(np.array(motion.vec))[nodes]
+        middle = 0.5 * (points.min(axis=0) + points.max(axis=0)) if center is None else center
+        # Full numbering: the gradient of a wave does not vanish on clamped nodes.
+        coupling = csr_matrix(coupling_matrix(fem, water, surface, motion) / water.density)
+        space = product_space(fem)
+        to_free = _selection(operators.free, space.ndof)
+        to_nodes = basis.interpolation[:, nodes].T
+        flux = to_nodes @ coupling.T @ to_free[: coupling.shape[0]]
+        potential = to_free[space.Range(2).start :]
+        rows = np.split(np.arange(coupling.shape[0]), 3)
+        x, y, z = (csr_matrix(to_nodes @ coupling[row] @ potential) for row in rows)
+        return cls(points, np.asarray(middle), csr_matrix(flux), (x, y, z), water)
+
+    def multipoles(
+        self,
+        omega: FloatArray,
+        response: ComplexArray,
+        *,
+        tolerance: float = 1e-4,
+        max_degree: int = 20,
+    ) -> Multipoles:
+        """Outgoing waves of a response.
+
+        With the regular waves g = j_l(k r) Y_lm about the centre,
+        a_lm = -i k int (g i omega u . n - psi dg/dn), n out of the fluid (theory: S2-9).
+
+        Parameters
+        ----------
+        omega : (f,) array
+            Angular frequencies [rad/s].
+        response : (f, n) array
+            Free unknowns.
+        tolerance : float
+            The sum stops when two degrees in a row add less than this share of the power at every
+            frequency.
+        max_degree : int
+            Highest degree in any case.
+        """
+        omega = np.atleast_1d(np.asarray(omega, dtype=np.float64))
+        response = np.atleast_2d(response)
+        wavenumber = omega / self.water.sound_speed
+        away = self.points - self.center
+        scale = float(np.linalg.norm(away, axis=1).max())
+        away = away / scale
+        distance = np.linalg.norm(away, axis=1)
+        velocity = 1j * omega[:, None] * (self.flux @ response.T).T
+        doublet = np.stack([(part @ response.T).T for part in self.doublet], axis=1) / scale
+        radial = np.einsum("fin,ni->fn", doublet, away)
+        found: list[ComplexArray] = []
+        powers: list[FloatArray] = []
+        for degree in range(max_degree + 1):
+            harmonics, gradients = solid_harmonics(away, degree)
+            value, slope = radial_factors(distance, wavenumber * scale, degree)
+            integral = (value * velocity - slope * radial) @ harmonics.T
+            for axis in range(3):
+                integral -= (value * doublet[:, axis]) @ gradients[:, axis].T
+            found.append(-1j * wavenumber[:, None] * integral)
+            powers.append(np.sum(np.abs(found[-1]) ** 2, axis=1))
+            if degree > 1 and np.all(powers[-1] + powers[-2] < tolerance * sum(powers)):
+                break
+        tail = (powers[-1] + powers[-2]) / sum(powers)
+        return Multipoles(self.center, omega, np.concatenate(found, axis=1), self.water, tail)
+
+
+def _selection(free: IntArray, size: int) -> csr_matrix:
+    """Matrix (size, n) that puts the free unknowns into the full numbering."""
+    ones: AnyArray = np.ones(len(free))
+    return csr_matrix((ones, (free, np.arange(len(free)))), shape=(size, len(free)))

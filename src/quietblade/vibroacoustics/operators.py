@@ -1,0 +1,307 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The symmetric system (u, p, psi) of the vibrating blade in water, as affine terms (theory: S2-7).
+
+Unknowns are those of the product space V * P * Q: displacement of order 2, film pressure of order
+1 and velocity potential of order 2, with p = -i omega rho psi and exp(+i omega t).  Only the free
+ones are kept: the solid's nodes away from the clamped root, the film's and the water's.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import ngsolve as ngs
+import numpy as np
+from scipy.sparse import coo_array, csr_matrix
+
+from quietblade.errors import MeshError
+from quietblade.mesh.model import INTERFACE
+from quietblade.typing import AnyArray, IntArray
+from quietblade.vibroacoustics.fluid import (
+    FLUID,
+    Water,
+    boundary,
+    compressibility_matrix,
+    coupling_matrix,
+    kinetic_matrix,
+    potential_space,
+)
+from quietblade.vibroacoustics.pattern import CommonPattern
+from quietblade.vibroacoustics.radiation import (
+    Bgt1,
+    RadiationCondition,
+    check_sphere,
+    static_exterior,
+)
+
+SOLID = "blade|film"
+FILM = "film"
+CLAMPED = "root"
+_ROUNDING = 1e-9
+
+
+@dataclass(frozen=True)
+class Blocks:
+    """Positions of displacement, film pressure and potential among the free unknowns."""
+
+    u: IntArray
+    p: IntArray
+    psi: IntArray
+
+
+@dataclass(frozen=True)
+class Operators:
+    """A(omega) = K + i L - omega^2 M + i omega C - H + omega^2 G - (i omega + c/R) Q.
+
+    The last term stands for the radiation condition, here first-order BGT.
+
+    Attributes
+    ----------
+    terms : mapping of name to (n, n) csr_matrix
+        Real symmetric matrices on the free unknowns: stiffness K (tangent), loss L (with the loss
+        factor), mass M, both coupling blocks C, and of the water H and G (positive), and those of
+        the radiation condition (Q).
+    blocks : Blocks
+        Where u, p and psi are among the free unknowns.
+    free : (n,) int array
+        Their numbers in V * P * Q, uncompressed.
+    first_potential : int
+        Number of the first potential unknown in V * P * Q.
+    sound_speed, density : float
+        c [m/s] and rho [kg/m3] of the water.
+    radius : float
+        R of the outer sphere [m].
+    condition : RadiationCondition
+        What is required on the sphere.
+    losses : mapping of name to (n, n) csr_matrix
+        Parts that add up to L, by region; empty if they are not told apart.
+    exterior : (n, n) csr_matrix or None
+        Static exterior of the sphere, which real wet modes add to H; not a part of A(omega).
+    """
+
+    terms: Mapping[str, csr_matrix]
+    blocks: Blocks
+    free: IntArray
+    first_potential: int
+    sound_speed: float
+    density: float
+    radius: float
+    condition: RadiationCondition = field(default_factory=Bgt1)
+    losses: Mapping[str, csr_matrix] = field(default_factory=dict)
+    exterior: csr_matrix | None = None
+
+    @property
+    def size(self) -> int:
+        """Number of free unknowns."""
+        return len(self.free)
+
+    @cached_property
+    def pattern(self) -> CommonPattern:
+        """One sparsity pattern for all terms."""
+        return CommonPattern.of(self.terms)
+
+    def factors(self, omega: complex) -> dict[str, complex]:
+        """Factor of each term at an angular frequency [rad/s]."""
+        return {
+            "K": 1.0,
+            "L": 1.0j,
+            "M": -(omega**2),
+            "C": 1.0j * omega,
+            "H": -1.0,
+            "G": omega**2,
+            **self.condition.factors(omega, self.sound_speed, self.radius),
+        }
+
+    def at(self, omega: complex) -> csr_matrix:
+        """A(omega), complex symmetric, always on the same pattern (theory: S2-7)."""
+        return self.pattern.combine(self.factors(omega))
+
+    def right_hand_side(self, force: AnyArray) -> AnyArray:
+        """Free part of a force on the structure.
+
+        Parameters
+        ----------
+        force : (m,) or (m, k) array
+            Forces on the unknowns of V, in full numbering; m is at least ``V.ndof``.
+
+        Returns
+        -------
+        (n,) or (n, k) array
+        """
+        rhs = np.zeros((self.size, *force.shape[1:]), dtype=force.dtype)
+        rhs[self.blocks.u] = force[self.free[self.blocks.u]]
+        return rhs
+
+
+def product_space(fem: ngs.Mesh) -> ngs.ProductSpace:
+    """V * P * Q of displacement, film pressure and potential, uncompressed."""
+    displacement = ngs.VectorH1(fem, order=2)
+    pressure = ngs.H1(fem, order=1, definedon=FILM)
+    return displacement * pressure * potential_space(fem)
+
+
+def free_unknowns(fem: ngs.Mesh) -> tuple[IntArray, Blocks]:
+    """Numbers of the free unknowns in V * P * Q, and where each field is among them.
+
+    Raises
+    ------
+    MeshError
+        If the mesh has no solid or no water.
+    """
+    space = product_space(fem)
+    displacement, pressure, potential = space.components
+    moving = _dofs(displacement, fem.Materials(SOLID)) & ~_dofs(
+        displacement, fem.Boundaries(CLAMPED)
+    )
+    squeezed = _dofs(pressure, fem.Materials(FILM))
+    wet = _dofs(potential, fem.Materials(FLUID))
+    for name, mask in ((SOLID, moving), (FLUID, wet)):
+        if not mask.any():
+            raise MeshError(
+                f"no free unknown in the material {name!r}; "
+                f"the mesh has {sorted(set(fem.GetMaterials()))}"
+            )
+    free = np.flatnonzero(np.concatenate([moving, squeezed, wet]))
+    n_u, n_p = np.count_nonzero(moving), np.count_nonzero(squeezed)
+    u, p, psi = np.split(np.arange(len(free)), [n_u, n_u + n_p])
+    return free, Blocks(u, p, psi)
+
+
+def build_operators(
+    fem: ngs.Mesh,
+    *,
+    stiffness: csr_matrix,
+    mass: csr_matrix,
+    loss: csr_matrix | Mapping[str, csr_matrix] | None = None,
+    water: Water,
+    radius: float,
+    motion: ngs.GridFunction | None = None,
+    wetted: str = INTERFACE,
+    outer: str = "outer",
+    condition: RadiationCondition | None = None,
+) -> Operators:
+    """Assemble the water's matrices and put them beside the structure's.
+
+    Parameters
+    ----------
+    fem : ngsolve.Mesh
+        Materials "blade", "film" (may be absent) and "water"; "root" is clamped.
+    stiffness, mass : csr_matrix
+        K (tangent) and M of the structure in the full numbering of V * P, or of V if there is no
+        film pressure; mass is that of C0.
+    loss : csr_matrix, mapping of name to csr_matrix, or None
+        L, loss factor included, numbered likewise; several parts are added and also kept by name.
+    water : Water
+        Density and sound speed.
+    radius : float
+        R of the outer sphere [m].
+    motion : ngsolve.GridFunction or None
+        Displacement of the whole mesh, ``VectorH1(order=2)``, from C0 to C1 [m]: water and
+        coupling are then integrated on C1.  It vanishes on the sphere.
+    wetted, outer : str
+        Name patterns of the moving wetted surface and of the sphere.
+    condition : RadiationCondition or None
+        None takes first-order BGT.
+
+    Raises
+    ------
+    MeshError
+        If a region is missing, the outer boundary is not the sphere, or it moves.
+    """
+    condition = Bgt1() if condition is None else condition
+    check_sphere(fem, radius, outer)
+    if motion is not None:
+        _check_still(fem, motion, outer, radius)
+    free, blocks = free_unknowns(fem)
+    space = product_space(fem)
+    place = _Placement(space.ndof, free)
+    first_psi = space.Range(2).start
+    named_losses = loss if isinstance(loss, Mapping) else {"all": loss} if loss is not None else {}
+    sizes = (space.Range(1).start, first_psi)
+    losses = {
+        name: place(_symmetric(f"loss {name}", part, sizes)) for name, part in named_losses.items()
+    }
+    coupling = place(coupling_matrix(fem, water, wetted, motion), columns=first_psi)
+    fluid = {
+        "H": kinetic_matrix(fem, water, motion),
+        "G": compressibility_matrix(fem, water, motion),
+        **condition.matrices(fem, water, outer),
+    }
+    terms = {
+        "K": place(_symmetric("K", stiffness, sizes)),
+        "L": sum(losses.values(), start=csr_matrix((len(free), len(free)))),
+        "M": place(_symmetric("M", mass, sizes)),
+        "C": csr_matrix(coupling + coupling.T),
+        **{
+            name: place(_symmetric(name, part), first_psi, first_psi)
+            for name, part in fluid.items()
+        },
+    }
+    exterior = place(_symmetric("E", static_exterior(fem, water, radius, outer)), *2 * (first_psi,))
+    return Operators(
+        terms,
+        blocks,
+        free,
+        first_psi,
+        water.sound_speed,
+        water.density,
+        radius,
+        condition,
+        losses if isinstance(loss, Mapping) else {},
+        exterior,
+    )
+
+
+@dataclass(frozen=True)
+class _Placement:
+    """Puts a block of the full numbering into the matrix of the free unknowns."""
+
+    full: int
+    free: IntArray
+
+    @cached_property
+    def position(self) -> IntArray:
+        position = np.full(self.full, -1, dtype=np.int64)
+        position[self.free] = np.arange(len(self.free))
+        return position
+
+    def __call__(self, matrix: csr_matrix, rows: int = 0, columns: int = 0) -> csr_matrix:
+        """Free part of a block whose first entry is at (rows, columns)."""
+        entries = coo_array(matrix)
+        row, column = self.position[entries.row + rows], self.position[entries.col + columns]
+        # Forms on a product space store zeros between fields that do not meet.
+        kept = (row >= 0) & (column >= 0) & (entries.data != 0.0)
+        n = len(self.free)
+        return csr_matrix((entries.data[kept], (row[kept], column[kept])), shape=(n, n))
+
+
+def _symmetric(name: str, matrix: csr_matrix, sizes: tuple[int, ...] | None = None) -> csr_matrix:
+    """Exactly symmetric copy of a matrix that is symmetric up to rounding."""
+    if sizes is not None and matrix.shape not in [(size, size) for size in sizes]:
+        raise ValueError(
+            f"matrix {name!r} has shape {matrix.shape}; the displacement has {sizes[0]} unknowns, "
+            f"with the film pressure {sizes[1]}, the fixed ones included"
+        )
+    scale = abs(matrix).max() if matrix.nnz else 0.0
+    asymmetry = abs(matrix - matrix.T).max() if matrix.nnz else 0.0
+    if asymmetry > _ROUNDING * scale:
+        raise ValueError(
+            f"matrix {name!r} is not symmetric: largest difference {asymmetry:.3g} beside entries "
+            f"of {scale:.3g}; give its symmetric part"
+        )
+    return csr_matrix(0.5 * (matrix + matrix.T))
+
+
+def _dofs(space: ngs.FESpace, region: ngs.Region) -> AnyArray:
+    return np.array(space.GetDofs(region), dtype=bool)
+
+
+def _check_still(fem: ngs.Mesh, motion: ngs.GridFunction, outer: str, radius: float) -> None:
+    surface = ngs.ds(definedon=boundary(fem, outer))
+    squared = ngs.Integrate(ngs.InnerProduct(motion, motion) * surface, fem)
+    mean = float(np.sqrt(squared / (4.0 * np.pi))) / radius
+    if mean > 1e-9 * radius:
+        raise MeshError(
+            f"the outer sphere moves by {mean:.3g} m (mean) between C0 and C1; "
+            "the mesh motion must vanish on it"
+        )
