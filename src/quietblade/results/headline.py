@@ -1,0 +1,151 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""From a result to its headline figures."""
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from quietblade.results.claims import judge_claims
+from quietblade.results.model import ConfigurationResult, Result, path, state
+from quietblade.results.peaks import find_peaks
+from quietblade.results.summary import (
+    BalanceSummary,
+    CellSummary,
+    ClaimSummary,
+    MeshSummary,
+    ModesSummary,
+    ModeSummary,
+    RunSummary,
+    SoundPowerSummary,
+    StaticSummary,
+    Summary,
+)
+from quietblade.typing import FloatArray
+
+NAN = float("nan")
+
+
+def summarise(result: Result) -> Summary:
+    """Headline figures of a result."""
+    configurations = result.configurations
+    spectra = [c.spectrum for c in configurations.values()]
+    timings = result.run.timings
+    seconds = dict(zip(timings.stage, timings.seconds.tolist(), strict=True))
+    return Summary(
+        title=result.title,
+        blade=result.blade,
+        static=_static(result),
+        modes=ModesSummary(
+            C0=_modes(configurations.get("C0")), C1=_modes(configurations.get("C1"))
+        ),
+        sound_power=_sound_power(result),
+        balance=BalanceSummary(
+            max_relative_residual=_largest(s.balance_residual for s in spectra),
+            max_solver_residual=_largest(s.solver_residual for s in spectra),
+        ),
+        mesh=_mesh(result),
+        unknowns=int(result.mesh.unknowns.count.sum()),
+        timings_s={**seconds, "total": sum(seconds.values())},
+        notices=tuple(str(notice) for notice in result.run.notices.notices()),
+        claims=tuple(ClaimSummary(**vars(claim)) for claim in judge_claims(result)),
+        run=_run(result),
+    )
+
+
+def _static(result: Result) -> StaticSummary:
+    static, sections = result.static, result.static.sections
+    rigid, chained, coupled = (state(name) for name in ("rigid", "chained", "coupled"))
+    middle = np.argmin(np.abs(sections.span_fraction - static.mid_section.span_fraction))
+    twist = sections.blade_angle[coupled, -1] - sections.blade_angle[rigid, -1]
+    return StaticSummary(
+        tip_displacement_m=tuple(static.tip_displacement.tolist()),
+        max_film_shear_strain=static.max_film_shear_strain,
+        film_shear_strain_p99=static.film_shear_strain_p99,
+        max_film_shear_strain_place_m=tuple(static.max_film_shear_strain_place.tolist()),
+        max_blade_shear_strain=static.max_blade_shear_strain,
+        lift_n=float(static.lift[coupled]),
+        lift_rigid_n=float(static.lift[rigid]),
+        lift_chained_n=float(static.lift[chained]),
+        thrust_n=float(static.thrust[coupled]),
+        torque_nm=float(static.torque[coupled]),
+        mid_camber=float(sections.camber[coupled, middle]),
+        tip_blade_angle_deg=float(np.degrees(twist)),
+        iterations=static.iterations,
+        relative_change=float(static.history.relative_change[-1]),
+        converged=static.converged,
+    )
+
+
+def _modes(configuration: ConfigurationResult | None) -> tuple[ModeSummary, ...]:
+    if configuration is None:
+        return ()
+    modes, peaks = configuration.modes, find_peaks(configuration)
+    return tuple(
+        ModeSummary(
+            name=name,
+            frequency_hz=float(modes.frequency[i]),
+            loss_factor=float(modes.loss_factor[i]),
+            purity=float(modes.purity[i]),
+            partner=modes.partner[i],
+            partner_mac=float(modes.partner_mac[i]),
+            peak_frequency_hz=peaks[name].frequency if name in peaks else None,
+            peak_level_db=peaks[name].level if name in peaks else None,
+        )
+        for i, name in enumerate(modes.name)
+    )
+
+
+def _sound_power(result: Result) -> SoundPowerSummary:
+    members = list(result.configurations.values())
+    levels = {
+        name: tuple(c.spectrum.power_level[path("sphere")].tolist())
+        for name, c in result.configurations.items()
+    }
+    return SoundPowerSummary(
+        frequency_hz=tuple(members[0].spectrum.frequency.tolist()) if members else (),
+        C0_db=levels.get("C0", ()),
+        C1_db=levels.get("C1", ()),
+        radiation_condition=members[0].radiation_condition if members else "",
+        outer_radius_m=members[0].outer_radius if members else None,
+        kr_min=float(members[0].kr[0]) if members else None,
+        kr_max=float(members[0].kr[-1]) if members else None,
+        max_surface_difference_db=_difference(members, "wet_surface"),
+        max_multipole_difference_db=_difference(members, "multipoles"),
+    )
+
+
+def _difference(members: list[ConfigurationResult], other: str) -> float:
+    levels = [c.spectrum.power_level for c in members]
+    return _largest(np.abs(level[path("sphere")] - level[path(other)]) for level in levels)
+
+
+def _mesh(result: Result) -> MeshSummary:
+    mesh = result.mesh
+    cells = zip(mesh.cells.region, mesh.cells.kind, mesh.cells.count.tolist(), strict=True)
+    return MeshSummary(
+        nodes=mesh.nodes,
+        cells=tuple(CellSummary(region=r, kind=k, count=n) for r, k, n in cells),
+        worst_quality=dict(zip(mesh.quality.region, mesh.quality.worst.tolist(), strict=True)),
+        unknowns_by_part=dict(zip(mesh.unknowns.part, mesh.unknowns.count.tolist(), strict=True)),
+    )
+
+
+def _run(result: Result) -> RunSummary:
+    run = result.run
+    return RunSummary(
+        created=run.created,
+        platform=run.platform,
+        threads=run.threads,
+        code_version=run.code_version,
+        content_key=run.content_key,
+        packages=dict(zip(run.packages.name, run.packages.version, strict=True)),
+        solvers=tuple(dict.fromkeys(run.solvers.solver)),
+        fallbacks=run.fallbacks.event,
+    )
+
+
+def _largest(arrays: Iterable[FloatArray]) -> float:
+    """Largest finite value of all arrays, NaN if there is none."""
+    values = np.concatenate([np.empty(0), *arrays])
+    values = values[np.isfinite(values)]
+    return float(values.max()) if values.size else NAN

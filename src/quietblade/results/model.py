@@ -1,0 +1,363 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The result of a study: plain arrays in SI units, nothing of the solvers that made them.
+
+Every attribute is registered, with unit and meaning, in `quietblade.results.quantities`.
+Angles are in rad. A number that was not computed is NaN, a text that does not apply is empty.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import ClassVar
+
+import numpy as np
+
+from quietblade.errors import Notice
+from quietblade.results.quantities import CONFIGURATIONS, LABELS
+from quietblade.results.record import Record
+from quietblade.typing import BoolArray, ComplexArray, FloatArray, IntArray
+
+NAN = float("nan")
+REFERENCE_POWER = 1e-12
+"""Reference of sound power levels [W]."""
+
+
+def state(name: str) -> int:
+    """Index of a state of loading: ``rigid``, ``chained`` or ``coupled``."""
+    return LABELS["state"].index(name)
+
+
+def path(name: str) -> int:
+    """Index of a path of the sound power: ``sphere``, ``wet_surface`` or ``multipoles``."""
+    return LABELS["path"].index(name)
+
+
+# --- step 1 -----------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, eq=False)
+class CouplingHistory(Record):
+    """The loop between flow and structure, pass by pass."""
+
+    group: ClassVar[str] = "static/history"
+    relative_change: FloatArray
+    tip_displacement: FloatArray
+    lift: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class NewtonTable(Record):
+    """Newton's method in the structure, step by step over the whole loop."""
+
+    group: ClassVar[str] = "static/newton"
+    coupling_iteration: IntArray
+    fraction: FloatArray
+    iteration: IntArray
+    residual: FloatArray
+    increment: FloatArray
+    new_tangent: BoolArray
+
+
+@dataclass(frozen=True, eq=False)
+class SectionCurves(Record):
+    """Curves along the span; rows are the states rigid, chained, coupled."""
+
+    group: ClassVar[str] = "static/sections"
+    span_fraction: FloatArray
+    radius: FloatArray
+    chord: FloatArray
+    blade_angle: FloatArray
+    camber: FloatArray
+    incidence: FloatArray
+    lift_coefficient: FloatArray
+    lift_per_length: FloatArray
+    warp: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class MidSection(Record):
+    """Contours of the section at mid-span; rows are the states rigid, chained, coupled."""
+
+    group: ClassVar[str] = "static/mid_section"
+    span_fraction: float
+    normalised: FloatArray
+    placed: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class StaticResult(Record):
+    """Step 1: the blade in equilibrium with the flow."""
+
+    group: ClassVar[str] = "static"
+    history: CouplingHistory
+    newton: NewtonTable
+    sections: SectionCurves
+    mid_section: MidSection
+    tip_displacement: FloatArray
+    force: FloatArray
+    moment: FloatArray
+    lift: FloatArray
+    thrust: FloatArray
+    torque: FloatArray
+    tolerance: float
+    converged: bool
+    max_film_shear_strain: float = NAN
+    film_shear_strain_p99: float = NAN
+    max_film_shear_strain_place: FloatArray = field(default_factory=lambda: np.full(3, NAN))
+    max_blade_shear_strain: float = NAN
+
+    @property
+    def iterations(self) -> int:
+        """Passes of the coupling."""
+        return len(self.history.lift)
+
+
+# --- step 2 -----------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, eq=False)
+class ModeTable(Record):
+    """Wet modes in ascending frequency."""
+
+    group: ClassVar[str] = "C*/modes"
+    name: tuple[str, ...]
+    frequency: FloatArray
+    loss_factor: FloatArray
+    film_loss: FloatArray
+    radiation_loss: FloatArray
+    purity: FloatArray
+    partner: tuple[str, ...]
+    partner_mac: FloatArray
+    participation: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class Spectrum(Record):
+    """Response to the harmonic excitation. A frequency that could not be solved is NaN.
+
+    ``power_by_degree`` has no rows if the multipoles were not computed.
+    """
+
+    group: ClassVar[str] = "C*/spectrum"
+    frequency: FloatArray
+    power: FloatArray
+    power_by_degree: FloatArray
+    injected: FloatArray
+    dissipated: FloatArray
+    solver_residual: FloatArray
+    mobility: ComplexArray
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if np.any(np.diff(self.frequency) <= 0.0):
+            raise ValueError("C*/spectrum/frequency: frequencies must ascend")
+
+    @property
+    def power_level(self) -> FloatArray:
+        """Sound power level [dB re 1 pW] by path; NaN where the power is not positive."""
+        audible = np.where(self.power > 0.0, self.power, NAN)
+        return np.asarray(10.0 * np.log10(audible / REFERENCE_POWER), dtype=np.float64)
+
+    @property
+    def balance_residual(self) -> FloatArray:
+        """|injected - radiated through the sphere - dissipated| / injected."""
+        error = self.injected - self.power[path("sphere")] - self.dissipated
+        return np.asarray(np.abs(error / self.injected), dtype=np.float64)
+
+
+@dataclass(frozen=True, eq=False)
+class ConfigurationResult(Record):
+    """Step 2 about one configuration, C0 or C1."""
+
+    group: ClassVar[str] = "C*"
+    modes: ModeTable
+    spectrum: Spectrum
+    radiation_condition: str
+    outer_radius: float
+    sound_speed: float
+    water_density: float
+    excitation_pressure: float
+    excitation_area: float
+
+    @property
+    def kr(self) -> FloatArray:
+        """Wave number times outer radius, at the frequencies of the spectrum."""
+        k = 2.0 * np.pi * self.spectrum.frequency / self.sound_speed
+        return np.asarray(k * self.outer_radius, dtype=np.float64)
+
+
+# --- mesh and run -----------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, eq=False)
+class CellCensus(Record):
+    """Number of cells by region and kind."""
+
+    group: ClassVar[str] = "mesh/cells"
+    region: tuple[str, ...]
+    kind: tuple[str, ...]
+    count: IntArray
+
+
+@dataclass(frozen=True, eq=False)
+class MeshQuality(Record):
+    """Shape figures of the cells by region."""
+
+    group: ClassVar[str] = "mesh/quality"
+    region: tuple[str, ...]
+    worst: FloatArray
+    mean: FloatArray
+    least_jacobian: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class Unknowns(Record):
+    """Free unknowns of step 2 by part."""
+
+    group: ClassVar[str] = "mesh/unknowns"
+    part: tuple[str, ...]
+    count: IntArray
+
+
+@dataclass(frozen=True, eq=False)
+class MeshResult(Record):
+    """The mesh in figures."""
+
+    group: ClassVar[str] = "mesh"
+    nodes: int
+    cells: CellCensus
+    quality: MeshQuality
+    unknowns: Unknowns
+
+
+@dataclass(frozen=True, eq=False)
+class Packages(Record):
+    """Versions of the packages that the result depends on."""
+
+    group: ClassVar[str] = "run/packages"
+    name: tuple[str, ...]
+    version: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Timings(Record):
+    """Wall-clock time by stage."""
+
+    group: ClassVar[str] = "run/timings"
+    stage: tuple[str, ...]
+    seconds: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class SolverReport(Record):
+    """Linear solvers by use."""
+
+    group: ClassVar[str] = "run/solvers"
+    use: tuple[str, ...]
+    solver: tuple[str, ...]
+    factorizations: IntArray
+    worst_residual: FloatArray
+    peak_memory: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class Fallbacks(Record):
+    """Changes of the linear solver during the run."""
+
+    group: ClassVar[str] = "run/fallbacks"
+    event: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class NoticeTable(Record):
+    """Warnings of the run."""
+
+    group: ClassVar[str] = "run/notices"
+    where: tuple[str, ...]
+    message: tuple[str, ...]
+    value: FloatArray
+    limit: FloatArray
+    remedy: tuple[str, ...]
+
+    @classmethod
+    def of(cls, notices: tuple[Notice, ...]) -> "NoticeTable":
+        """Make the table from `Notice` objects."""
+        return cls(
+            where=tuple(n.where for n in notices),
+            message=tuple(n.message for n in notices),
+            value=np.array([NAN if n.value is None else n.value for n in notices], dtype=float),
+            limit=np.array([NAN if n.limit is None else n.limit for n in notices], dtype=float),
+            remedy=tuple(n.remedy for n in notices),
+        )
+
+    def notices(self) -> tuple[Notice, ...]:
+        """Return the `Notice` objects again."""
+        rows = zip(self.where, self.message, self.value, self.limit, self.remedy, strict=True)
+        return tuple(
+            Notice(where, message, _known(value), _known(limit), remedy)
+            for where, message, value, limit, remedy in rows
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class RunRecord(Record):
+    """Provenance: what made the result, on what, in which time, with which warnings."""
+
+    group: ClassVar[str] = "run"
+    created: str
+    platform: str
+    threads: int
+    code_version: str
+    content_key: str
+    case_text: str
+    packages: Packages
+    timings: Timings
+    solvers: SolverReport
+    fallbacks: Fallbacks
+    notices: NoticeTable
+
+
+@dataclass(frozen=True, eq=False)
+class Result(Record):
+    """A whole study of one blade.
+
+    Attributes
+    ----------
+    title : str
+        Title of the case.
+    blade : str
+        ``aluminium`` or ``composite`` if the case stands for one of the paper's blades, or empty.
+    static : StaticResult
+    configurations : mapping
+        `ConfigurationResult` by name, C0 and C1 or those that were computed, with the
+        frequencies of the spectra in common.
+    mesh : MeshResult
+    run : RunRecord
+    """
+
+    group: ClassVar[str] = ""
+    title: str
+    blade: str
+    static: StaticResult
+    configurations: Mapping[str, ConfigurationResult]
+    mesh: MeshResult
+    run: RunRecord
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        unknown = set(self.configurations) - set(CONFIGURATIONS)
+        if unknown:
+            raise ValueError(f"configurations {sorted(unknown)}; there are {CONFIGURATIONS}")
+        ordered = {
+            name: self.configurations[name]
+            for name in CONFIGURATIONS
+            if name in self.configurations
+        }
+        object.__setattr__(self, "configurations", MappingProxyType(ordered))
+        grids = [c.spectrum.frequency for c in ordered.values()]
+        if any(not np.array_equal(grid, grids[0]) for grid in grids):
+            raise ValueError("the spectra of C0 and C1 must share their frequencies")
+
+
+def _known(value: float) -> float | None:
+    return None if np.isnan(value) else float(value)

@@ -1,0 +1,292 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The register of every quantity that a run stores: name, symbol, unit, dimensions, meaning.
+
+The groups are those of ``result.nc``; ``C*`` stands for ``C0`` and ``C1``. The group ``fields``
+holds the point data of the VTU files. What is not registered cannot be stored.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from types import MappingProxyType
+from typing import Literal
+
+Kind = Literal["real", "complex", "integer", "flag", "text"]
+
+CONFIGURATIONS = ("C0", "C1")
+"""At rest, and deformed by the steady load."""
+
+LABELS: Mapping[str, tuple[str, ...]] = MappingProxyType(
+    {
+        "axis": ("x", "y", "z"),
+        "plane": ("chordwise", "normal"),
+        "state": ("rigid", "chained", "coupled"),
+        "path": ("sphere", "wet_surface", "multipoles"),
+        "complex": ("re", "im"),
+    }
+)
+"""Dimensions whose entries have names."""
+
+DIMENSIONS: Mapping[str, str] = MappingProxyType(
+    {
+        "axis": "blade frame: x downstream along the rotor axis, z along the span, y = z cross x",
+        "plane": "along the chord (leading to trailing edge), and normal to it (upper side)",
+        "state": "undeformed blade; its load applied once; equilibrium with its own load",
+        "path": "where the sound power is measured: outer sphere, wetted surface, outgoing "
+        "multipoles of the wetted surface's motion and pressure",
+        "complex": "real and imaginary part, exp(+i omega t)",
+        "iteration": "passes of the loop between flow and structure",
+        "newton_step": "Newton steps of the structure, in the order taken",
+        "section": "hydrodynamic sections from root to tip",
+        "contour": "nodes of a section: upper trailing edge, nose, lower trailing edge",
+        "mode": "wet modes in ascending frequency",
+        "frequency": "frequencies of the sweep [Hz]",
+        "degree": "degree of the outgoing spherical harmonics, from 0 (monopole)",
+        "block": "cells of one kind in one region",
+        "region": "regions of the mesh",
+        "part": "parts of the vector of unknowns",
+        "stage": "stages of the run, in order",
+        "use": "uses of linear solvers",
+        "fallback": "changes of solver during the run",
+        "notice": "warnings",
+        "package": "packages that the result depends on",
+    }
+)
+"""Every dimension and what runs along it."""
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A registered quantity.
+
+    Attributes
+    ----------
+    group, name : str
+        Group of ``result.nc`` and name of the variable in it.
+    symbol, unit : str
+        Symbol in the equations and SI unit ("1": a ratio or a count, "": not a number).
+    dims : tuple of str
+        Dimensions; none is a scalar.
+    description : str
+        What it is, in one sentence.
+    equation : str
+        How it is defined, where a definition is needed.
+    kind : {"real", "complex", "integer", "flag", "text"}
+        What one value is. A real that was not computed is NaN.
+    reference : str
+        Reference value of a level, such as "1 pW".
+    """
+
+    group: str
+    name: str
+    symbol: str
+    unit: str
+    dims: tuple[str, ...]
+    description: str
+    equation: str = ""
+    kind: Kind = "real"
+    reference: str = ""
+
+    @property
+    def label(self) -> str:
+        """Unit with its reference, as it stands on an axis: ``m``, ``dB re 1 pW``."""
+        return f"{self.unit} re {self.reference}" if self.reference else self.unit
+
+
+def _q(
+    name: str,
+    symbol: str,
+    unit: str,
+    dims: str,
+    description: str,
+    equation: str = "",
+    *,
+    kind: Kind = "real",
+    reference: str = "",
+) -> Quantity:
+    return Quantity(
+        "", name, symbol, unit, tuple(dims.split()), description, equation, kind, reference
+    )
+
+
+def _text(name: str, dims: str, description: str) -> Quantity:
+    return _q(name, "", "", dims, description, kind="text")
+
+
+def _count(name: str, symbol: str, dims: str, description: str) -> Quantity:
+    return _q(name, symbol, "1", dims, description, kind="integer")
+
+
+# fmt: off
+_GROUPS: dict[str, tuple[Quantity, ...]] = {
+    "": (
+        _text("title", "", "title of the case"),
+        _text("blade", "", "blade of the paper that the case stands for, or empty"),
+    ),
+    "static": (
+        _q("tip_displacement", "u_tip", "m", "axis", "displacement of the mid-chord of the tip"),
+        _q("max_film_shear_strain", "gamma_max", "1", "",
+           "largest engineering shear strain in the film, between its normal and its plane",
+           "gamma = sqrt((2 E_13)^2 + (2 E_23)^2), E Green-Lagrange, axis 3 through the film"),
+        _q("film_shear_strain_p99", "gamma_99", "1", "",
+           "shear strain that 99 % of the film's volume stays below"),
+        _q("max_film_shear_strain_place", "X_gamma", "m", "axis",
+           "where the film's shear strain is largest, on the undeformed blade"),
+        _q("max_blade_shear_strain", "gamma_blade", "1", "",
+           "largest engineering shear strain outside the film", "largest E_i - E_j, i != j"),
+        _q("force", "F", "N", "state axis", "force of the water on the blade"),
+        _q("moment", "M", "N m", "state axis", "moment of that force about the origin"),
+        _q("lift", "L", "N", "state", "lift of all sections", "int L' ds along the deformed span"),
+        _q("thrust", "T", "N", "state", "thrust of one blade", "T = -F_x"),
+        _q("torque", "Q", "N m", "state", "power-absorbing torque of one blade about the axis"),
+        _q("tolerance", "epsilon", "1", "", "relative change at which the coupling stops"),
+        _q("converged", "", "", "", "whether the coupling met its tolerance", kind="flag"),
+    ),
+    "static/history": (
+        _q("relative_change", "", "1", "iteration", "change of the displacement in one pass",
+           "||u_k - u_(k-1)|| / ||u_(k-1)||; NaN in the first pass, which starts from zero"),
+        _q("tip_displacement", "u_tip", "m", "iteration axis", "tip displacement after the pass"),
+        _q("lift", "L", "N", "iteration", "lift that was applied in the pass"),
+    ),
+    "static/newton": (
+        _count("coupling_iteration", "k", "newton_step", "pass of the coupling, from 1"),
+        _q("fraction", "lambda", "1", "newton_step", "fraction of the way to the pass's load"),
+        _count("iteration", "j", "newton_step", "Newton iteration at this load, from 0"),
+        _q("residual", "", "1", "newton_step", "relative residual before the correction"),
+        _q("increment", "", "1", "newton_step", "correction relative to the displacement"),
+        _q("new_tangent", "", "", "newton_step", "whether the tangent is new", kind="flag"),
+    ),
+    "static/sections": (
+        _q("span_fraction", "s", "1", "section", "place along the span: 0 root, 1 tip"),
+        _q("radius", "r", "m", "state section", "distance of the mid-chord from the rotor axis"),
+        _q("chord", "c", "m", "state section", "chord"),
+        _q("blade_angle", "theta", "rad", "state section",
+           "angle of the chord to the rotor axis, positive if it raises the incidence"),
+        _q("camber", "f", "1", "state section", "largest camber over the chord"),
+        _q("incidence", "alpha", "rad", "state section",
+           "angle from the chord to the relative velocity normal to the deformed span"),
+        _q("lift_coefficient", "C_L", "1", "state section", "lift coefficient of the section",
+           "C_L = L' / (1/2 rho W_n^2 c)"),
+        _q("lift_per_length", "L'", "N/m", "state section", "lift per deformed length of span"),
+        _q("warp", "", "1", "state section",
+           "largest distance of the deformed section from its plane, over the chord"),
+    ),
+    "static/mid_section": (
+        _q("span_fraction", "s", "1", "", "place of the section along the span"),
+        _q("normalised", "", "1", "state contour plane",
+           "contour over the chord, leading edge at (0, 0), trailing edge at (1, 0)"),
+        _q("placed", "x", "m", "state contour axis", "contour in the blade frame"),
+    ),
+    "C*": (
+        _text("radiation_condition", "", "condition on the outer sphere"),
+        _q("outer_radius", "R", "m", "", "radius of the outer sphere"),
+        _q("sound_speed", "c", "m/s", "", "speed of sound in the water"),
+        _q("water_density", "rho", "kg/m^3", "", "density of the water"),
+        _q("excitation_pressure", "p_exc", "Pa", "", "amplitude of the exciting pressure"),
+        _q("excitation_area", "S_exc", "m^2", "", "area that it acts on"),
+    ),
+    "C*/modes": (
+        _text("name", "mode", "name: family (B bending, T torsion, E edgewise) and number in it"),
+        _q("frequency", "f_n", "Hz", "mode", "natural frequency in the water",
+           "undamped, incompressible water, static exterior"),
+        _q("loss_factor", "eta_n", "1", "mode", "loss factor, film and radiation"),
+        _q("film_loss", "eta_film", "1", "mode", "part of it that the film dissipates"),
+        _q("radiation_loss", "eta_rad", "1", "mode", "part of it that is radiated"),
+        _q("purity", "", "1", "mode", "share of the displacement that fits the family"),
+        _text("partner", "mode", "name of the most similar mode of the other configuration"),
+        _q("partner_mac", "MAC", "1", "mode", "similarity to that mode",
+           "MAC = |a^T M b|^2 / (a^T M a  b^T M b) on the material points of the blade"),
+        _q("participation", "Gamma_n", "1", "mode",
+           "share of the exciting pressure's work, relative to the best excited mode"),
+    ),
+    "C*/spectrum": (
+        _q("frequency", "f", "Hz", "frequency", "frequency of the excitation"),
+        _q("power", "W", "W", "path frequency", "radiated sound power",
+           "W = +1/2 Re int p v_n* dS on the sphere, n outward"),
+        _q("power_level", "L_W", "dB", "path frequency", "radiated sound power level",
+           "10 log10(W / 1 pW)", reference="1 pW"),
+        _q("power_by_degree", "W_l", "W", "degree frequency", "power of one degree"),
+        _q("injected", "W_in", "W", "frequency", "power of the exciting pressure"),
+        _q("dissipated", "W_film", "W", "frequency", "power that the film dissipates"),
+        _q("balance_residual", "", "1", "frequency", "error of the energy balance",
+           "|W_in - W_sphere - W_film| / W_in"),
+        _q("solver_residual", "", "1", "frequency", "relative residual of the linear solve",
+           "||A x - b|| / ||b||"),
+        _q("mobility", "Y", "m/(s N)", "frequency",
+           "mean velocity of the excited area over the exciting force",
+           "W_in = 1/2 |p_exc S_exc|^2 Re Y", kind="complex"),
+    ),
+    "mesh": (
+        _count("nodes", "N", "", "nodes of the mesh, vertices and mid-edge nodes"),
+    ),
+    "mesh/cells": (
+        _text("region", "block", "region of the cells"),
+        _text("kind", "block", "kind of the cells: tetra10, pyramid13, hexahedron20"),
+        _count("count", "n", "block", "number of cells"),
+    ),
+    "mesh/quality": (
+        _text("region", "region", "region of the cells"),
+        _q("worst", "", "1", "region", "least signed inverse condition number (1: regular cell)"),
+        _q("mean", "", "1", "region", "mean of it"),
+        _q("least_jacobian", "", "1", "region",
+           "least ratio of the Jacobian at a quadrature point to the cell's mean"),
+    ),
+    "mesh/unknowns": (
+        _text("part", "part", "part of the vector of unknowns"),
+        _count("count", "n", "part", "free unknowns of the part"),
+    ),
+    "run": (
+        _text("created", "", "date and time at which the run ended, UTC, ISO 8601"),
+        _text("platform", "", "operating system, processor and Python"),
+        _count("threads", "", "", "threads that the run could use"),
+        _text("code_version", "", "version of quietblade"),
+        _text("content_key", "", "hash of the case and of the code that the result depends on"),
+        _text("case_text", "", "the case file"),
+    ),
+    "run/packages": (
+        _text("name", "package", "package that the result depends on"),
+        _text("version", "package", "its version"),
+    ),
+    "run/timings": (
+        _text("stage", "stage", "stage of the run"),
+        _q("seconds", "t", "s", "stage", "wall-clock time of the stage"),
+    ),
+    "run/solvers": (
+        _text("use", "use", "what was solved"),
+        _text("solver", "use", "solver and precision"),
+        _count("factorizations", "", "use", "number of factorisations"),
+        _q("worst_residual", "", "1", "use", "largest relative residual of a solve"),
+        _q("peak_memory", "", "B", "use", "largest memory of one factorisation"),
+    ),
+    "run/fallbacks": (
+        _text("event", "fallback", "from which solver to which, and why"),
+    ),
+    "run/notices": (
+        _text("where", "notice", "part of the computation or place on the blade"),
+        _text("message", "notice", "what is noticed"),
+        _q("value", "", "", "notice", "the value in SI units, or NaN"),
+        _q("limit", "", "", "notice", "the limit that it is compared with, or NaN"),
+        _text("remedy", "notice", "what can be done about it"),
+    ),
+    "fields": (
+        _q("displacement", "u_1", "m", "axis", "steady displacement from C0 to C1"),
+        _q("film_shear_strain", "gamma", "1", "", "engineering shear strain of the film",
+           "gamma = sqrt((2 E_13)^2 + (2 E_23)^2)"),
+        _q("pressure", "p_1", "Pa", "", "steady pressure above that far away"),
+        _q("mode_shape", "phi_n", "1", "axis", "wet mode, scaled to a largest displacement of 1",
+           kind="complex"),
+        _q("response", "u_2", "m", "axis", "displacement amplitude at one frequency",
+           kind="complex"),
+        _q("sound_pressure", "p_2", "Pa", "", "sound pressure amplitude at one frequency",
+           "p = -i omega rho psi", kind="complex"),
+    ),
+}
+# fmt: on
+
+
+def _register() -> dict[str, Quantity]:
+    entries = [replace(q, group=group) for group, members in _GROUPS.items() for q in members]
+    return {f"{q.group}/{q.name}".lstrip("/"): q for q in entries}
+
+
+QUANTITIES: Mapping[str, Quantity] = MappingProxyType(_register())
+"""The register, by ``group/name``."""

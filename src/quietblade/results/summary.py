@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The headline figures of a run as data: what ``quietblade show --json`` prints.
+
+Units are in the names of the fields. A figure that was not computed is null.
+"""
+
+from typing import Annotated, Any
+
+import numpy as np
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
+
+from quietblade.results.quantities import QUANTITIES
+
+
+def _finite(value: Any) -> Any:
+    """JSON has no NaN."""
+    return None if isinstance(value, float) and not np.isfinite(value) else value
+
+
+Number = Annotated[float | None, BeforeValidator(_finite)]
+Vector = tuple[Number, Number, Number]
+
+
+def _of(key: str, note: str = "") -> Any:
+    """Field that is described by a registered quantity."""
+    quantity = QUANTITIES[key]
+    unit = f" [{quantity.label}]" if quantity.label not in {"", "1"} else ""
+    more = f"; {note}" if note else ""
+    return Field(description=f"{quantity.description}{unit}{more}")
+
+
+class _Part(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+class StaticSummary(_Part):
+    """Step 1."""
+
+    tip_displacement_m: Vector = _of("static/tip_displacement", "axes x, y, z of the blade frame")
+    max_film_shear_strain: Number = _of("static/max_film_shear_strain")
+    film_shear_strain_p99: Number = _of("static/film_shear_strain_p99")
+    max_film_shear_strain_place_m: Vector = _of("static/max_film_shear_strain_place")
+    max_blade_shear_strain: Number = _of("static/max_blade_shear_strain")
+    lift_n: Number = _of("static/lift", "coupled")
+    lift_rigid_n: Number = _of("static/lift", "rigid")
+    lift_chained_n: Number = _of("static/lift", "chained")
+    thrust_n: Number = _of("static/thrust", "coupled")
+    torque_nm: Number = _of("static/torque", "coupled")
+    mid_camber: Number = _of("static/sections/camber", "coupled, mid section")
+    tip_blade_angle_deg: Number = Field(description="change of the blade angle at the tip [deg]")
+    iterations: int = Field(description="passes of the coupling")
+    relative_change: Number = _of("static/history/relative_change", "the last one")
+    converged: bool = _of("static/converged")
+
+
+class ModeSummary(_Part):
+    """One wet mode."""
+
+    name: str = _of("C*/modes/name")
+    frequency_hz: Number = _of("C*/modes/frequency")
+    loss_factor: Number = _of("C*/modes/loss_factor")
+    purity: Number = _of("C*/modes/purity")
+    partner: str = _of("C*/modes/partner")
+    partner_mac: Number = _of("C*/modes/partner_mac")
+    peak_frequency_hz: Number = Field(description="frequency of the mode's peak in the power [Hz]")
+    peak_level_db: Number = Field(description="sound power level of that peak [dB re 1 pW]")
+
+
+class ModesSummary(_Part):
+    """Wet modes of both configurations, in ascending frequency."""
+
+    C0: tuple[ModeSummary, ...] = Field(description="at rest")
+    C1: tuple[ModeSummary, ...] = Field(description="deformed by the steady load")
+
+
+class SoundPowerSummary(_Part):
+    """Sound power through the outer sphere."""
+
+    frequency_hz: tuple[float, ...] = _of("C*/spectrum/frequency")
+    C0_db: tuple[Number, ...] = _of("C*/spectrum/power_level", "at rest; empty if not computed")
+    C1_db: tuple[Number, ...] = _of("C*/spectrum/power_level", "deformed; empty if not computed")
+    radiation_condition: str = _of("C*/radiation_condition")
+    outer_radius_m: Number = _of("C*/outer_radius")
+    kr_min: Number = Field(description="least wave number times outer radius in the band")
+    kr_max: Number = Field(description="greatest wave number times outer radius in the band")
+    max_surface_difference_db: Number = Field(
+        description="largest difference of the levels from sphere and wetted surface [dB]"
+    )
+    max_multipole_difference_db: Number = Field(
+        description="largest difference of the levels from sphere and multipoles, which do not "
+        "depend on the radiation condition's reflections [dB]"
+    )
+
+
+class BalanceSummary(_Part):
+    """How well the energy balances, over both configurations."""
+
+    max_relative_residual: Number = _of("C*/spectrum/balance_residual", "the largest")
+    max_solver_residual: Number = _of("C*/spectrum/solver_residual", "the largest")
+
+
+class CellSummary(_Part):
+    """Cells of one kind in one region."""
+
+    region: str = _of("mesh/cells/region")
+    kind: str = _of("mesh/cells/kind")
+    count: int = _of("mesh/cells/count")
+
+
+class MeshSummary(_Part):
+    """The mesh."""
+
+    nodes: int = _of("mesh/nodes")
+    cells: tuple[CellSummary, ...] = Field(description="census of the cells")
+    worst_quality: dict[str, Number] = _of("mesh/quality/worst", "by region")
+    unknowns_by_part: dict[str, int] = _of("mesh/unknowns/count")
+
+
+class ClaimSummary(_Part):
+    """A claim of the paper beside the computed value."""
+
+    id: str = Field(description="stable name")
+    statement: str = Field(description="what it is about")
+    paper: str = Field(description="what the paper says")
+    computed: str = Field(description="what was computed")
+    criterion: str = Field(description="when the two agree")
+    value: Number = Field(description="figure that the judgement rests on")
+    agrees: bool | None = Field(description="null if it was not computed")
+
+
+class RunSummary(_Part):
+    """Where the result comes from."""
+
+    created: str = _of("run/created")
+    platform: str = _of("run/platform")
+    threads: int = _of("run/threads")
+    code_version: str = _of("run/code_version")
+    content_key: str = _of("run/content_key")
+    packages: dict[str, str] = Field(description="version by package")
+    solvers: tuple[str, ...] = Field(description="linear solvers that were used")
+    fallbacks: tuple[str, ...] = _of("run/fallbacks/event")
+
+
+class Summary(_Part):
+    """The headline figures of a run."""
+
+    title: str = _of("title")
+    blade: str = _of("blade")
+    static: StaticSummary
+    modes: ModesSummary
+    sound_power: SoundPowerSummary
+    balance: BalanceSummary
+    mesh: MeshSummary
+    unknowns: int = Field(description="free unknowns of step 2")
+    timings_s: dict[str, float] = _of("run/timings/seconds", "and their sum as `total`")
+    notices: tuple[str, ...] = Field(description="warnings")
+    claims: tuple[ClaimSummary, ...] = Field(
+        description="claims of the paper; empty unless the case stands for one of its blades"
+    )
+    run: RunSummary

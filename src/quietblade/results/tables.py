@@ -1,0 +1,185 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The headline figures as small tables, for the screen, for ``summary.txt`` and for the report."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from quietblade.results.summary import ModeSummary, Summary
+
+
+@dataclass(frozen=True)
+class Table:
+    """A titled table of texts.
+
+    Attributes
+    ----------
+    title : str
+    columns : tuple of str
+        Heads; empty for a list of name and value.
+    rows : tuple of tuple of str
+    note : str
+        A line that belongs below the table.
+    """
+
+    title: str
+    columns: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+    note: str = ""
+
+
+def summary_tables(summary: Summary) -> tuple[Table, ...]:
+    """Headline tables in the order in which people ask."""
+    tables = [
+        _static(summary),
+        _modes(summary),
+        _claims(summary),
+        _checks(summary),
+        _run(summary),
+    ]
+    if summary.notices:
+        rows = tuple((notice,) for notice in summary.notices)
+        tables.append(Table("Warnings", (), rows))
+    return tuple(table for table in tables if table.rows)
+
+
+def as_text(title: str, tables: Iterable[Table]) -> str:
+    """Plain text with aligned columns."""
+    parts = [title, "=" * len(title)]
+    for table in tables:
+        parts += ["", table.title, "-" * len(table.title), *_lines(table)]
+        if table.note:
+            parts.append(f"({table.note})")
+    return "\n".join(parts) + "\n"
+
+
+def number(value: float | None, form: str = ".4g") -> str:
+    """Format a figure; a dash if it was not computed."""
+    return "-" if value is None else format(value, form)
+
+
+def verdict(agrees: bool | None) -> str:
+    """Say whether a claim agrees."""
+    return {True: "agrees", False: "DIFFERS", None: "not judged"}[agrees]
+
+
+def _static(summary: Summary) -> Table:
+    static = summary.static
+    along = ", ".join(number(_times(1e3, u), ".1f") for u in static.tip_displacement_m)
+    place = ", ".join(number(u, ".3f") for u in static.max_film_shear_strain_place_m)
+    gain = _change(static.lift_n, static.lift_rigid_n)
+    state = "converged" if static.converged else "NOT CONVERGED"
+    change = number(static.relative_change, ".1e")
+    return Table(
+        "Steady load",
+        (),
+        (
+            ("Tip displacement x, y, z", f"{along} mm"),
+            ("Blade angle at the tip, change", f"{number(static.tip_blade_angle_deg, '+.3f')} deg"),
+            ("Camber of the mid section", f"{number(_times(100, static.mid_camber), '+.3f')} %"),
+            ("Lift", f"{number(static.lift_n, '.1f')} N ({gain} against the rigid blade)"),
+            ("Lift, rigid and chained",
+             f"{number(static.lift_rigid_n, '.1f')} and {number(static.lift_chained_n, '.1f')} N"),
+            ("Thrust, torque of one blade",
+             f"{number(static.thrust_n, '.2f')} N, {number(static.torque_nm, '.2f')} N m"),
+            ("Largest film shear strain",
+             f"{number(_times(100, static.max_film_shear_strain), '.2f')} %; 99 % of the film "
+             f"below {number(_times(100, static.film_shear_strain_p99), '.2f')} %"),
+            ("  at x, y, z", f"{place} m"),
+            ("Coupling", f"{state}, {static.iterations} iterations, last change {change}"),
+        ),
+    )  # fmt: skip
+
+
+def _modes(summary: Summary) -> Table:
+    loaded = {mode.name: mode for mode in summary.modes.C1}
+    rows = [_mode_row(rest, loaded.pop(rest.partner, None)) for rest in summary.modes.C0]
+    rows += [_mode_row(None, mode) for mode in loaded.values()]
+    sound = summary.sound_power
+    note = ""
+    if sound.radiation_condition:
+        note = (
+            f"levels in dB re 1 pW through the sphere; {sound.radiation_condition}, "
+            f"R = {number(sound.outer_radius_m)} m, "
+            f"kR = {number(sound.kr_min, '.2f')} to {number(sound.kr_max, '.2f')}"
+        )
+    heads = ("Mode", "C0 [Hz]", "C1 [Hz]", "shift", "loss C0", "loss C1", "MAC",
+             "peak C0 [dB]", "peak C1 [dB]")  # fmt: skip
+    return Table("Wet modes and peaks of the sound power", heads, tuple(rows), note)
+
+
+def _mode_row(rest: ModeSummary | None, loaded: ModeSummary | None) -> tuple[str, ...]:
+    names = [mode.name for mode in (rest, loaded) if mode]
+    before, after = (m.frequency_hz if m else None for m in (rest, loaded))
+    return (
+        " / ".join(dict.fromkeys(names)),
+        number(before, ".2f"),
+        number(after, ".2f"),
+        _change(after, before),
+        *(number(m.loss_factor if m else None, ".2e") for m in (rest, loaded)),
+        number(rest.partner_mac if rest and loaded else None, ".3f"),
+        *(number(m.peak_level_db if m else None, ".1f") for m in (rest, loaded)),
+    )
+
+
+def _claims(summary: Summary) -> Table:
+    rows = tuple(
+        (verdict(claim.agrees), claim.statement, claim.paper, claim.computed, claim.criterion)
+        for claim in summary.claims
+    )
+    judged = [claim for claim in summary.claims if claim.agrees is not None]
+    met = sum(bool(claim.agrees) for claim in judged)
+    note = f"{met} of {len(judged)} claims agree by quietblade's own criteria"
+    heads = ("", "Claim", "Paper", "Computed", "Agrees if")
+    return Table("The paper's claims", heads, rows, note)
+
+
+def _checks(summary: Summary) -> Table:
+    sound, balance = summary.sound_power, summary.balance
+    return Table(
+        "How far to trust it",
+        (),
+        (
+            ("Energy balance, worst", number(balance.max_relative_residual, ".1e")),
+            ("Linear solves, worst residual", number(balance.max_solver_residual, ".1e")),
+            ("Sphere against wetted surface",
+             f"{number(sound.max_surface_difference_db, '.2g')} dB"),
+            ("Sphere against multipoles",
+             f"{number(sound.max_multipole_difference_db, '.2g')} dB"),
+            ("Worst cell quality",
+             ", ".join(f"{r} {number(q, '.3f')}" for r, q in summary.mesh.worst_quality.items())),
+        ),
+    )  # fmt: skip
+
+
+def _run(summary: Summary) -> Table:
+    cells = ", ".join(f"{c.region} {c.count} {c.kind}" for c in summary.mesh.cells)
+    stages = ", ".join(f"{name} {t:.1f}" for name, t in summary.timings_s.items())
+    rows = [
+        ("Mesh", f"{summary.mesh.nodes} nodes; {cells}"),
+        ("Unknowns", str(summary.unknowns)),
+        ("Time [s]", stages),
+        ("Solvers", "; ".join(summary.run.solvers)),
+        *(("Change of solver", event) for event in summary.run.fallbacks),
+        ("Version", f"quietblade {summary.run.code_version} on {summary.run.platform}"),
+    ]
+    return Table("Run", (), tuple(rows))
+
+
+def _times(factor: float, value: float | None) -> float | None:
+    return None if value is None else factor * value
+
+
+def _change(value: float | None, base: float | None) -> str:
+    if value is None or not base:
+        return "-"
+    return f"{100.0 * (value / base - 1.0):+.2f} %"
+
+
+def _lines(table: Table) -> list[str]:
+    rows = [table.columns, *table.rows] if table.columns else list(table.rows)
+    columns = list(zip(*rows, strict=True))
+    widths = [max(map(len, column)) for column in columns]
+    lines = ["  ".join(map(str.ljust, row, widths)).rstrip() for row in rows]
+    if table.columns:
+        lines.insert(1, "  ".join("-" * width for width in widths))
+    return lines

@@ -1,0 +1,202 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Curves of step 2: sound power over frequency, with the names of the modes at the peaks."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.gridspec import SubplotSpec
+from matplotlib.patches import ConnectionPatch
+
+from quietblade.results.model import REFERENCE_POWER, ConfigurationResult, Result, path
+from quietblade.results.peaks import Peak, find_peaks
+from quietblade.typing import AnyArray, FloatArray
+from quietblade.view.style import (
+    BLACK,
+    CONFIGURATION,
+    GREEN,
+    GREY,
+    SERIES,
+    VERMILION,
+    Stroke,
+    new_figure,
+    styled,
+)
+
+_LEVEL = "Sound power level $L_W$ [dB re 1 pW]"
+_FREQUENCY = "Frequency [Hz]"
+_TITLES = {"C0": "C0, at rest", "C1": "C1, under load"}
+
+
+@dataclass(frozen=True)
+class _Curve:
+    label: str
+    configuration: ConfigurationResult
+    stroke: Stroke
+
+
+@styled
+def draw_sound_power(result: Result, pictures: Mapping[str, AnyArray] | None = None) -> Figure:
+    """Sound power at rest and under load.
+
+    Parameters
+    ----------
+    result : Result
+        The study.
+    pictures : mapping, optional
+        Pictures (rows, columns, 3 or 4) of the mode shapes at rest by name; those that make a
+        peak are drawn above it.
+    """
+    curves = [
+        _Curve(_TITLES[name], configuration, CONFIGURATION[name])
+        for name, configuration in result.configurations.items()
+    ]
+    return _draw_spectra(curves, f"Sound power, {result.title}", pictures or {})
+
+
+@styled
+def draw_sound_power_at_rest(results: Sequence[Result]) -> Figure:
+    """Sound power of several blades at rest."""
+    curves = [
+        _Curve(result.blade or result.title, result.configurations["C0"], stroke)
+        for result, stroke in zip(results, SERIES, strict=False)
+        if "C0" in result.configurations
+    ]
+    return _draw_spectra(curves, "Sound power at rest (C0)", {})
+
+
+@styled
+def draw_power_paths(result: Result) -> Figure:
+    """Where the injected power goes, and the radiated power by two independent paths."""
+    figure = new_figure(2.6 * max(len(result.configurations), 1))
+    axes = figure.subplots(max(len(result.configurations), 1), sharex=True, squeeze=False)[:, 0]
+    for ax, (name, configuration) in zip(axes, result.configurations.items(), strict=False):
+        spectrum = configuration.spectrum
+        radiated = spectrum.power_level
+        f = spectrum.frequency
+        ax.plot(f, _level(spectrum.injected), color=BLACK, linewidth=1.0, label="injected")
+        ax.plot(f, _level(spectrum.dissipated), color=GREEN, linestyle=(0, (5, 1.5, 1, 1.5)),
+                label="dissipated in the film")  # fmt: skip
+        ax.plot(f, radiated[path("sphere")], **CONFIGURATION["C0"].options(),
+                label=f"radiated, sphere ({configuration.radiation_condition})")  # fmt: skip
+        ax.plot(f, radiated[path("multipoles")], color=VERMILION, linestyle=(0, (1.2, 1.2)),
+                label="radiated, multipoles")  # fmt: skip
+        ax.set(title=_TITLES[name], xlim=(f[0], f[-1]), ylabel="Power level\n[dB re 1 pW]")
+        _keep_readable(ax, [_level(spectrum.injected), *radiated])
+    axes[0].legend(loc="lower left", bbox_to_anchor=(0.25, 1.0), ncols=2)
+    axes[-1].set_xlabel(_FREQUENCY)
+    return figure
+
+
+def _draw_spectra(curves: Sequence[_Curve], title: str, pictures: Mapping[str, AnyArray]) -> Figure:
+    shown = _peaks_with_picture(curves, pictures)
+    figure = new_figure(4.7 if shown else 3.4)
+    grid = figure.add_gridspec(2 if shown else 1, 1, height_ratios=[0.3, 1.0] if shown else [1.0])
+    axes = figure.add_subplot(grid[-1])
+    for curve in curves:
+        spectrum = curve.configuration.spectrum
+        level = spectrum.power_level[path("sphere")]
+        axes.plot(spectrum.frequency, level, label=curve.label, **curve.stroke.options())
+    axes.set(xlabel=_FREQUENCY, ylabel=_LEVEL)
+    if not curves:
+        return figure
+    frequency = curves[0].configuration.spectrum.frequency
+    axes.set_xlim(frequency[0], frequency[-1])
+    _keep_readable(axes, [c.configuration.spectrum.power_level[path("sphere")] for c in curves])
+    _name_peaks(axes, curves)
+    axes.legend(loc="lower left", ncols=len(curves))
+    axes.text(
+        1.0, 1.01, _radiation_note(curves[0].configuration), transform=axes.transAxes,
+        ha="right", va="bottom", fontsize=7.5, color="0.35",
+    )  # fmt: skip
+    if shown:
+        _draw_pictures(figure, grid[0], axes, [(peak, pictures[peak.mode]) for peak in shown])
+        figure.suptitle(title, x=0.01, ha="left", fontsize=9.0)
+    else:
+        axes.set_title(title)
+    return figure
+
+
+def _radiation_note(configuration: ConfigurationResult) -> str:
+    kr = configuration.kr
+    return (
+        f"{configuration.radiation_condition} on a sphere of R = {configuration.outer_radius:.3g} m"
+        f", kR = {kr[0]:.2f} to {kr[-1]:.2f}"
+    )
+
+
+def _name_peaks(axes: Axes, curves: Sequence[_Curve]) -> None:
+    """Write the names above the peaks; a name close to one that stands there goes higher."""
+    marked = [
+        (peak, curve.stroke.color)
+        for curve in curves
+        for peak in find_peaks(curve.configuration).values()
+    ]
+    low, high = axes.get_xlim()
+    room = 0.035 * (high - low)
+    bottom, top = axes.get_ylim()
+    step = 0.05 * (top - bottom)
+    placed: list[tuple[float, float]] = []
+    for peak, color in sorted(marked, key=lambda item: -item[0].level):
+        height = peak.level + 0.3 * step
+        while any(abs(f - peak.frequency) < room and abs(h - height) < step for f, h in placed):
+            height += 0.5 * step
+        placed.append((peak.frequency, height))
+        axes.plot(peak.frequency, peak.level, ".", color=color, markersize=4.0)
+        axes.text(
+            peak.frequency, height, peak.mode,
+            ha="center", va="bottom", color=color, fontsize=8.0, fontweight="bold",
+        )  # fmt: skip
+    axes.set_ylim(bottom, max([top, *(h + 1.6 * step for _, h in placed)]))
+
+
+def _keep_readable(axes: Axes, levels: Sequence[FloatArray]) -> None:
+    """Leave antiresonances below the 60 dB under the highest level outside the axes."""
+    values = np.concatenate(list(levels))
+    values = values[np.isfinite(values)]
+    if values.size:
+        top = float(values.max())
+        axes.set_ylim(max(float(values.min()), top - 60.0) - 3.0, top + 2.0)
+
+
+def _level(power: FloatArray) -> FloatArray:
+    positive = np.where(power > 0.0, power, np.nan)
+    return np.asarray(10.0 * np.log10(positive / REFERENCE_POWER), dtype=np.float64)
+
+
+# --- pictures of the modes ---------------------------------------------------------------------
+
+
+def _peaks_with_picture(
+    curves: Sequence[_Curve], pictures: Mapping[str, AnyArray]
+) -> tuple[Peak, ...]:
+    """Peaks at rest that have a picture, at most the six highest, in order of frequency."""
+    if not curves or not pictures:
+        return ()
+    peaks = [p for name, p in find_peaks(curves[0].configuration).items() if name in pictures]
+    highest = sorted(peaks, key=lambda p: -p.level)[:6]
+    return tuple(sorted(highest, key=lambda p: p.frequency))
+
+
+def _draw_pictures(
+    figure: Figure, strip: SubplotSpec, axes: Axes, shown: Sequence[tuple[Peak, AnyArray]]
+) -> None:
+    """Draw the pictures in a row, each tied to its peak."""
+    row = strip.subgridspec(1, len(shown), wspace=0.05)
+    for column, (peak, picture) in enumerate(shown):
+        ax = figure.add_subplot(row[0, column])
+        ax.imshow(picture)
+        ax.set_axis_off()
+        ax.set_title(f"{peak.mode}, {peak.frequency:.1f} Hz", fontsize=8.0, loc="center")
+        tie = ConnectionPatch(
+            xyA=(0.5, 0.0),
+            coordsA=ax.transAxes,
+            xyB=(peak.frequency, peak.level),
+            coordsB=axes.transData,
+            color=GREY,
+            linewidth=0.6,
+            linestyle=":",
+        )
+        figure.add_artist(tie)

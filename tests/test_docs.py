@@ -1,0 +1,132 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Documents against the source: equation labels, commands, cases, table of the radiation page."""
+
+import re
+import subprocess
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from quietblade.case import Case
+from verification.acoustics_closed_forms import bgt1, power_ratio
+
+ROOT = Path(__file__).resolve().parent.parent
+LABEL = re.compile(r"\bS[12]-\d+\b")
+TEXT = {".bib", ".cff", ".in", ".json", ".lock", ".md", ".py", ".svg", ".toml", ".txt", ""}
+
+
+def made(part: str) -> bool:
+    """Whether a folder holds what was made or installed."""
+    return part in {"build", "runs", "_generated", "__pycache__"} or (
+        part.startswith(".") and part != ".ci"
+    )
+
+
+def own_files() -> list[Path]:
+    """Files of the repository: those that git knows or would add; in an archive, all."""
+    command = ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"]
+    try:
+        done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
+        found = [ROOT / name for name in done.stdout.split("\0") if name]
+    except (OSError, subprocess.CalledProcessError):
+        found = [
+            path for path in ROOT.rglob("*") if not any(map(made, path.relative_to(ROOT).parts))
+        ]
+    return [path for path in found if path.is_file() and path.suffix in TEXT]
+
+
+def defined_labels() -> list[str]:
+    pages = (page.read_text(encoding="utf-8") for page in sorted(ROOT.glob("docs/theory*.md")))
+    return [label for text in pages for label in re.findall(r"\\tag\{(S[12]-\d+)\}", text)]
+
+
+def cited_labels() -> dict[str, set[str]]:
+    """Labels by file, wherever source, tests and documents name one."""
+    folders = ("src", "verification", "benchmarks", "tests", "docs")
+    files = [
+        p for folder in folders for p in (ROOT / folder).rglob("*") if p.suffix in {".py", ".md"}
+    ]
+    cited = {
+        str(p.relative_to(ROOT)): set(LABEL.findall(p.read_text(encoding="utf-8"))) for p in files
+    }
+    return {name: labels for name, labels in cited.items() if labels}
+
+
+def test_every_cited_equation_exists() -> None:
+    defined = set(defined_labels())
+    assert {
+        name: labels - defined for name, labels in cited_labels().items() if labels - defined
+    } == {}
+
+
+def test_labels_are_unique_and_have_an_anchor() -> None:
+    labels = defined_labels()
+    assert len(labels) == len(set(labels)) > 20
+    for page in ROOT.glob("docs/theory*.md"):
+        text = page.read_text(encoding="utf-8")
+        assert re.findall(r"^\((S[12]-\d+)\)=$", text, re.M) == re.findall(
+            r"\\tag\{(S[12]-\d+)\}", text
+        )
+
+
+def makefile_targets() -> set[str]:
+    text = (ROOT / "Makefile").read_text(encoding="utf-8")
+    return set(re.findall(r"^([a-z-]+):(?!=)", text, re.M))
+
+
+@pytest.mark.parametrize("name", ["README.md", "docs/getting-started.md", "docs/architecture.md"])
+def test_make_commands_of_documents_exist(name: str) -> None:
+    text = (ROOT / name).read_text(encoding="utf-8")
+    named = set(re.findall(r"(?:^|`)make ([a-z-]+)", text, re.M))
+    assert named
+    assert named <= makefile_targets()
+
+
+def test_readme_begins_with_two_commands() -> None:
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    section = text.split("## Two commands")[1].split("##")[0]
+    assert re.search(r"```sh\nmake demo\nmake test\n```", section)
+
+
+@pytest.mark.parametrize("name", ["README.md", "docs/case-file.md"])
+def test_toml_examples_can_be_read(name: str) -> None:
+    text = (ROOT / name).read_text(encoding="utf-8")
+    examples = re.findall(r"```toml\n(.*?)```", text, re.S)
+    assert examples
+    for example in examples:
+        assert tomllib.loads(example)
+
+
+def test_readme_case_is_a_case() -> None:
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    case = Case.parse(re.findall(r"```toml\n(.*?)```", text, re.S)[0])
+    assert case.blade.hub_radius == pytest.approx(0.15)
+
+
+def test_readme_python_example_runs(capsys: pytest.CaptureFixture[str]) -> None:
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    code = re.findall(r"```python\n(.*?)```", text, re.S)[0]
+    exec(compile(code, "README.md", "exec"), {})
+    assert capsys.readouterr().out.strip()
+
+
+def test_nothing_names_a_machine_or_a_workplace() -> None:
+    # Joined here, so that this file does not contain them.
+    forbidden = ["/" + "work/", "/" + "root/", "/" + "farm/", "shared" + "/", "file:" + "///"]
+    found = {
+        str(path.relative_to(ROOT)): word
+        for path in own_files()
+        for word in forbidden
+        if word in path.read_text(encoding="utf-8", errors="replace")
+    }
+    assert found == {}
+
+
+def test_radiation_table_of_the_theory_page() -> None:
+    text = (ROOT / "docs" / "theory-step2.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| ([\d.]+) \| ([\d.]+) \| ([\d.]+) \|$", text, re.M)
+    assert len(rows) >= 5
+    for kr, dipole, quadrupole in (map(float, row) for row in rows):
+        assert dipole == pytest.approx(power_ratio(1, kr, bgt1), rel=5e-3)
+        assert quadrupole == pytest.approx(power_ratio(2, kr, bgt1), rel=5e-3)
