@@ -33,11 +33,14 @@ $(STAMP): pyproject.toml $(LOCK) tools/check_system.py
 	@touch $@
 
 demo: $(STAMP)
-	$(BIN)/quietblade run cases/paper-aluminium.toml --out runs/paper-aluminium
-	$(BIN)/quietblade run cases/paper-composite.toml --out runs/paper-composite
+	$(BIN)/quietblade run --brief cases/paper-aluminium.toml --out runs/paper-aluminium
+	$(BIN)/quietblade run --brief cases/paper-composite.toml --out runs/paper-composite
+	@$(BIN)/quietblade plot --joint runs/paper-aluminium runs/paper-composite --quiet
 	@$(BIN)/quietblade show runs/paper-aluminium
 	@$(BIN)/quietblade show runs/paper-composite
-	@echo "pictures: runs/paper-aluminium/figures and runs/paper-composite/figures"
+	@$(BIN)/quietblade report runs/paper-aluminium
+	@$(BIN)/quietblade report runs/paper-composite
+	@echo "pictures: runs/paper-aluminium/figures, runs/paper-composite/figures, runs/figures"
 
 # Many small problems: one thread each, so that processes do not fight for the cores.
 test: export OMP_NUM_THREADS = 1

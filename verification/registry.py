@@ -13,7 +13,8 @@ class Check:
     Attributes
     ----------
     id : str
-        Stable name that begins with the part: ``structure/``, ``flow/``, ``acoustics/``, ``paper/``.
+        Stable name that begins with the part: ``structure/``, ``flow/``, ``acoustics/`` or
+        ``paper/``.
     quantity, source : str
         What is compared (with its unit), and where the reference comes from.
     reference, tolerance : float
@@ -37,8 +38,16 @@ class Check:
         start = perf_counter()
         value = float(self.compute())
         passed = abs(value - self.reference) <= self.tolerance
-        return Row(self.id, self.quantity, self.reference, self.source, value, self.tolerance,
-                   passed, perf_counter() - start)
+        return Row(
+            self.id,
+            self.quantity,
+            self.reference,
+            self.source,
+            value,
+            self.tolerance,
+            passed,
+            perf_counter() - start,
+        )
 
 
 @dataclass(frozen=True)

@@ -4,12 +4,12 @@ import dataclasses
 import ngsolve as ngs
 import numpy as np
 import pytest
-from tests.conftest import PAPER_FILM, PATCH, make_paper_blade, make_twisted_blade
 
 from quietblade.errors import MeshError
 from quietblade.geometry import Blade
 from quietblade.mesh import INTERFACE, Mesh, MeshSpec, build_mesh
 from quietblade.mesh.quality import tetrahedron_jacobians
+from tests.conftest import PAPER_FILM, PATCH, make_paper_blade, make_twisted_blade
 
 
 def volume(mesh: Mesh, region: str) -> float:

@@ -54,7 +54,9 @@ SHAPES = {
 }  # fmt: skip
 
 
-def make_result(blade: str = "aluminium", case_text: str = "[blade]\nspan = '1 m'  # größe\n") -> m.Result:
+def make_result(
+    blade: str = "aluminium", case_text: str = "[blade]\nspan = '1 m'  # größe\n"
+) -> m.Result:
     shape = SHAPES[blade]
     grid = _grid(shape)
     return m.Result(
@@ -171,8 +173,8 @@ def make_configuration(
     edgewise = np.array([name.startswith("E") for name in names])
     strength = np.where(edgewise, 2e-4, 1.0) * 10 ** (np.array(rise) / 10)
     omega, omega_n = 2 * np.pi * frequency, 2 * np.pi * f_n[:, None]
-    modal_mobility = 1j * omega * strength[:, None] / (
-        omega_n**2 * (1 + 1j * eta[:, None]) - omega**2
+    modal_mobility = (
+        1j * omega * strength[:, None] / (omega_n**2 * (1 + 1j * eta[:, None]) - omega**2)
     )
     force = 10.0
     modal_power = 0.5 * force**2 * modal_mobility.real
@@ -219,7 +221,9 @@ def make_run(case_text: str) -> m.RunRecord:
         content_key="0123abcd",
         case_text=case_text,
         packages=m.Packages(name=("ngsolve", "numpy"), version=("6.2.2608", "2.4.6")),
-        timings=m.Timings(stage=("mesh", "equilibrium", "sweep"), seconds=np.array([4.0, 20.5, 60])),
+        timings=m.Timings(
+            stage=("mesh", "equilibrium", "sweep"), seconds=np.array([4.0, 20.5, 60])
+        ),
         solvers=m.SolverReport(
             use=("sweep",),
             solver=("rslab, mixed precision",),
@@ -300,7 +304,9 @@ def _bend(s: float | FloatArray) -> FloatArray:
     return s**2 * (6.0 - 4.0 * s + s**2) / 3.0
 
 
-def _beam(nodes: FloatArray, s: FloatArray, deflection: FloatArray, twist: FloatArray) -> FloatArray:
+def _beam(
+    nodes: FloatArray, s: FloatArray, deflection: FloatArray, twist: FloatArray
+) -> FloatArray:
     slope = np.gradient(deflection[np.argsort(s)], np.sort(s) + 1e-9 * np.arange(len(s)))
     inverse = np.argsort(np.argsort(s))
     slope = np.clip(slope[inverse], -1.0, 1.0)

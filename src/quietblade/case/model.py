@@ -114,7 +114,15 @@ class Case(Words):
             table[last] = value
             changed = (*tables, last)
             lines = {path: n for path, n in lines.items() if path[: len(changed)] != changed}
-        return self._build(replace(self._source, data=data, lines=lines))
+        text = self._source.text + "".join(
+            f"# changed in memory: {key} = {value!r}\n" for key, value in changes.items()
+        )
+        return self._build(replace(self._source, data=data, lines=lines, text=text))
+
+    @property
+    def text(self) -> str:
+        """The case file as it was read, or the case as JSON if it came from a program."""
+        return self._source.text or json.dumps(self.plain(), indent=2)
 
     @property
     def file(self) -> str:

@@ -39,12 +39,15 @@ class Source:
         Path of each key to its line number.
     si : bool
         Bare numbers are SI values, because a program wrote them.
+    text : str
+        The file as it stands; changes made in memory follow as comments.
     """
 
     file: str = field(default="case", compare=False)
     data: Mapping[str, Any] = field(default_factory=dict, compare=False)
     lines: Mapping[Path, int] = field(default_factory=dict, compare=False)
     si: bool = field(default=False, compare=False)
+    text: str = field(default="", compare=False)
 
     def line(self, path: Path) -> int | None:
         """Line of a key, or of the nearest table around it."""
@@ -108,7 +111,7 @@ def parse_source(text: str, name: str) -> Source:
     """
     try:
         data = tomllib.loads(text)
-        return Source(name, data, locate_lines(text))
+        return Source(name, data, locate_lines(text), text=text)
     except RecursionError:
         fault = Problem(name, None, "", "", "is nested too deeply", "Write plain tables and lists")
     except ValueError as error:  # tomllib.TOMLDecodeError, or a number beyond all limits

@@ -281,5 +281,5 @@ class SolverWords(Words):
         description="Factors in single precision with refinement (mixed), or in double",
     )
     tolerance: Annotated[Number, between(0.0, 1e-3, open_low=True)] = Field(
-        1e-9, title="Tolerance", description="Relative residual that each solve must reach"
+        1e-10, title="Tolerance", description="Relative residual that each solve aims at"
     )

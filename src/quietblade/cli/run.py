@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """``quietblade run``: from a case file to a result folder."""
 
+import os
 from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.text import Text
 
-from quietblade.cli.common import ExitCode, console, show_notices
+from quietblade.cli.common import ExitCode, console
 from quietblade.cli.progress import ProgressDisplay
+from quietblade.cli.tables import show_tables
 
 
 def run(
@@ -20,14 +21,20 @@ def run(
     force: Annotated[
         bool, typer.Option("--force", help="Compute again although the result is there.")
     ] = False,
+    brief: Annotated[
+        bool, typer.Option("--brief", help="Leave out the tables; `quietblade show` prints them.")
+    ] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Show errors only.")] = False,
 ) -> ExitCode:
     """Compute a case: deformation, wet modes and radiated sound."""
+    # many small dense systems: threads of the BLAS would only fight with those of the solvers
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     from quietblade.case import Case  # noqa: PLC0415  # help must stay fast
     from quietblade.results.headline import summarise  # noqa: PLC0415
     from quietblade.results.store import RunFolder  # noqa: PLC0415
-    from quietblade.results.tables import as_text, summary_tables  # noqa: PLC0415
+    from quietblade.results.tables import summary_tables  # noqa: PLC0415
     from quietblade.study.run import finished, run_case  # noqa: PLC0415
+    from quietblade.view.figures import draw_figures  # noqa: PLC0415
 
     words = Case.load(case)
     folder = RunFolder(out or Path("runs") / case.stem)
@@ -37,10 +44,11 @@ def run(
     else:
         with ProgressDisplay(console, quiet=quiet) as progress:
             result = run_case(words, folder, progress=progress)
+            draw_figures(folder, progress)
     if not quiet:
-        summary = summarise(result)
-        console.print(Text(as_text(summary.title, summary_tables(summary))))
-        show_notices(result.run.notices.notices())
+        if not brief:
+            summary = summarise(result)
+            show_tables(summary.title, summary_tables(summary))
         console.print(f"pictures: {folder.figures}\nfields:   {folder.static_fields.parent}")
         console.print(f"summary:  {folder.summary}\nresult:   {folder.result}")
     return ExitCode.DONE if result.static.converged else ExitCode.NOT_CONVERGED

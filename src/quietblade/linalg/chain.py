@@ -157,7 +157,7 @@ class ChainFactorization:
         self._lock = Lock()
         self.residual = float("nan")
         self.seconds = 0.0
-        self._factor = self._next_factor()
+        self._held: BackendFactor | None = self._next_factor()
 
     @property
     def n(self) -> int:
@@ -173,6 +173,12 @@ class ChainFactorization:
     def solver(self) -> str:
         """Name of the solver and precision in use."""
         return str(self.level)
+
+    @property
+    def _factor(self) -> BackendFactor:
+        if self._held is None:
+            raise SolverError(f"linear solver: no factor is left ({'; '.join(self._reasons)})")
+        return self._held
 
     @property
     def inertia(self) -> Inertia | None:
@@ -245,7 +251,8 @@ class ChainFactorization:
                         f"wanted {chain.tolerance:.1e}"
                     )
                 self._move_on(reason)
-                self._factor = self._next_factor()
+                self._held = None  # the next factor needs the memory
+                self._held = self._next_factor()
 
     def _move_on(self, reason: str) -> None:
         """Go to the next level, or give up; the failure is on record in both cases."""

@@ -13,7 +13,8 @@ import numpy as np
 
 from quietblade.linalg.pattern import Pattern, canonical
 from quietblade.linalg.protocol import BackendFailed, Inertia, SparseMatrix
-from quietblade.typing import AnyArray, IntArray
+from quietblade.linalg.refinement import equilibration
+from quietblade.typing import AnyArray, FloatArray, IntArray
 
 _ERRORS = {
     -1: "input inconsistent",
@@ -74,7 +75,11 @@ class PardisoAnalysis:
 
     def factor(self, A: SparseMatrix, *, single: bool) -> "PardisoFactor":
         """Factor on an analysed handle if one is idle, else on a new one."""
-        values = self.pattern.values(canonical(A))
+        A = canonical(A)
+        # Pivots are perturbed relative to the largest entry, which is that of one field only.
+        scale = equilibration(A, sweeps=4)
+        rows = np.repeat(np.arange(self.pattern.n), np.diff(self.pattern.indptr))
+        values = self.pattern.values(A) * scale[rows] * scale[self.pattern.indices]
         dtype = np.result_type(values.dtype, np.float32)
         if single:
             dtype = np.dtype(np.complex64 if np.iscomplexobj(values) else np.float32)
@@ -87,21 +92,21 @@ class PardisoAnalysis:
         if handle is None:
             handle = _Handle(self.pattern, kind, dtype, self.threads)
         handle.factor(values.astype(dtype))
-        return PardisoFactor(handle, self)
+        return PardisoFactor(handle, self, scale)
 
 
 class PardisoFactor:
     """A factor of PARDISO; its handle goes back to the analysis when nobody needs it."""
 
-    def __init__(self, handle: "_Handle", analysis: PardisoAnalysis) -> None:
-        self._handle = handle
+    def __init__(self, handle: "_Handle", analysis: PardisoAnalysis, scale: FloatArray) -> None:
+        self._handle, self._scale = handle, scale[:, None]
         self.inertia = handle.inertia()
         self.memory_bytes = handle.memory_bytes()
         weakref.finalize(self, analysis.idle.append, handle)
 
     def apply(self, b: AnyArray) -> AnyArray:
         """Substitute for the columns of ``b``."""
-        return self._handle.solve(b)
+        return self._scale * self._handle.solve(self._scale * b)
 
 
 class _Handle:

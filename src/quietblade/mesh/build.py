@@ -221,7 +221,7 @@ def _triangles(face: int, number: IntArray) -> IntArray:
     kinds, _, nodes = gmsh.model.mesh.getElements(2, face)
     if list(kinds) != [_TRIANGLE6]:
         raise MeshError("a wetted face is not meshed by six-node triangles")
-    return number[nodes[0].astype(np.int64).reshape(-1, 6)]
+    return np.asarray(number[nodes[0].astype(np.int64).reshape(-1, 6)])
 
 
 def _named_faces(

@@ -152,7 +152,7 @@ def _loft(sections: list[list[int]]) -> tuple[int, int]:
 
 
 def _outlines(blade: Blade, patch: Patch) -> list[int]:
-    """Closed outline of the patch as four splines through points of the blade's face."""
+    """Outline the patch by four splines through points of the blade's face."""
     corners = [(s, xi) for s in patch.span for xi in patch.chord]
     loop = [corners[0], corners[1], corners[3], corners[2]]
     tags = [_point(_face_points(blade, patch.side, *np.array(c))) for c in loop]

@@ -90,9 +90,7 @@ class NodalBasis:
         values = np.zeros((len(self.points), blocks.shape[1]), dtype=blocks.dtype)
         values[self._vertices] = blocks[self._vertices]
         edge = blocks[self.fem.nv :][: len(self._ends)]
-        values[self._edge_nodes] = (
-            blocks[self._ends].mean(axis=1) + _EDGE_BUBBLE_AT_MIDPOINT * edge
-        )
+        values[self._edge_nodes] = blocks[self._ends].mean(axis=1) + _EDGE_BUBBLE_AT_MIDPOINT * edge
         return values[:, 0] if values.shape[1] == 1 else values
 
     @cached_property
@@ -136,7 +134,8 @@ def _number_edges(fem: ngs.Mesh, vertices: IntArray, middles: FloatArray) -> tup
     if len(loose) == 0:
         return fem.nv + np.arange(len(middles)), fem.nv + len(middles)
     points = coordinates[loose]
-    distance, nearest = cKDTree(points).query(middles)
+    found = cKDTree(points).query(middles)
+    distance, nearest = np.asarray(found[0]), np.asarray(found[1])
     scale = np.ptp(points, axis=0).max()
     if distance.max() > 1e-9 * scale or len(np.unique(nearest)) != len(middles):
         raise MeshError(

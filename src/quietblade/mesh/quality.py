@@ -70,13 +70,11 @@ def tetrahedron_jacobians(nodes: FloatArray, connectivity: IntArray) -> FloatArr
 
 
 def _tetra10_derivatives(barycentric: FloatArray) -> FloatArray:
-    """Derivatives of the ten shape functions along the three local axes, (10, 3)."""
+    """Differentiate the ten shape functions along the three local axes, (10, 3)."""
     gradients = np.array([[-1.0, -1, -1], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
     edges = ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))
     corner = [(4 * lam - 1) * g for lam, g in zip(barycentric, gradients, strict=True)]
-    middle = [
-        4 * (barycentric[i] * gradients[j] + barycentric[j] * gradients[i]) for i, j in edges
-    ]
+    middle = [4 * (barycentric[i] * gradients[j] + barycentric[j] * gradients[i]) for i, j in edges]
     return np.array(corner + middle)
 
 

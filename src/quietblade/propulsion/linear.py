@@ -7,7 +7,7 @@ import ngsolve as ngs
 import numpy as np
 from scipy.sparse import csr_matrix
 
-from quietblade.linalg import Factorization, SparseSolver, make_solver
+from quietblade.linalg import Factorization, SolverChain, SparseSolver, make_solver
 from quietblade.mesh.assembly import csr_of
 from quietblade.typing import AnyArray, BoolArray, IntArray
 
@@ -15,7 +15,7 @@ from quietblade.typing import AnyArray, BoolArray, IntArray
 _TOLERANCE = 1e-9
 
 
-def newton_solver() -> SparseSolver:
+def newton_solver() -> SolverChain:
     """Solver of Newton's method: unsymmetric, since the load follows the surface."""
     return make_solver(symmetric=False, precision="double", tolerance=_TOLERANCE)
 

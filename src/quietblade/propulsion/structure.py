@@ -155,7 +155,7 @@ class Structure:
         start: StructureState | None = None,
         *,
         dead_load: FloatArray | None = None,
-        tolerance: float = 1e-7,
+        tolerance: float = 1e-6,
         progress: Progress = silent,
     ) -> StructureState:
         """Find the equilibrium under a pressure, by load steps of automatic size.
@@ -204,7 +204,7 @@ class Structure:
             )
             tangent = None
             table += outcome.steps
-            progress(_STAGE, done, str(table[-1]))
+            progress(_STAGE, fraction if outcome.converged else done, str(table[-1]))
             if outcome.converged:
                 x, done, width = outcome.x, fraction, 2 * width
                 continue

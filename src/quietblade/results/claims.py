@@ -263,10 +263,10 @@ def _acoustic_claims(result: Result, blade: str) -> Iterator[Claim]:
         partner, mac = _partner(rest, mode.name)
         there = loaded_peaks.get(partner)
         yield _peak(f"{blade}/peak-{order}", mode, here, computed=rest is not None)
-        shift = 100 * (there.frequency / here.frequency - 1) if here and there else np.nan
+        shift = 100 * (_frequency(loaded, partner) / _frequency(rest, mode.name) - 1)
         yield _claim(
             f"{blade}/shift-{order}",
-            f"{mode.name}: frequency of the peak, C1 against C0",
+            f"{mode.name}: natural frequency in the water, C1 against C0",
             mode.shift,
             shift,
             f"{shift:+.2f} %",
@@ -298,6 +298,13 @@ def _peak(key: str, mode: _PaperMode, peak: Peak | None, *, computed: bool) -> C
         return Claim(f"paper/{key}", statement, said.text, text, said.criterion("Hz"), None, False)
     frequency = peak.frequency if peak else np.nan
     return _claim(key, statement, said, frequency, f"{frequency:.1f} Hz", "Hz")
+
+
+def _frequency(configuration: ConfigurationResult | None, mode: str) -> float:
+    """Natural frequency of a mode [Hz]; a peak may lie beyond the band, the mode is still known."""
+    if configuration is None or mode not in configuration.modes.name:
+        return np.nan
+    return float(configuration.modes.frequency[configuration.modes.name.index(mode)])
 
 
 def _partner(rest: ConfigurationResult | None, mode: str) -> tuple[str, float]:

@@ -64,7 +64,7 @@ def verdict(agrees: bool | None) -> str:
 
 def _static(summary: Summary) -> Table:
     static = summary.static
-    along = ", ".join(number(_times(1e3, u), ".1f") for u in static.tip_displacement_m)
+    along = ", ".join(number(_times(1e3, u), "z.1f") for u in static.tip_displacement_m)
     place = ", ".join(number(u, ".3f") for u in static.max_film_shear_strain_place_m)
     gain = _change(static.lift_n, static.lift_rigid_n)
     state = "converged" if static.converged else "NOT CONVERGED"
@@ -98,12 +98,12 @@ def _modes(summary: Summary) -> Table:
     note = ""
     if sound.radiation_condition:
         note = (
-            f"levels in dB re 1 pW through the sphere; {sound.radiation_condition}, "
+            f"levels of the peaks in dB re 1 pW through the sphere; {sound.radiation_condition}, "
             f"R = {number(sound.outer_radius_m)} m, "
             f"kR = {number(sound.kr_min, '.2f')} to {number(sound.kr_max, '.2f')}"
         )
     heads = ("Mode", "C0 [Hz]", "C1 [Hz]", "shift", "loss C0", "loss C1", "MAC",
-             "peak C0 [dB]", "peak C1 [dB]")  # fmt: skip
+             "C0 [dB]", "C1 [dB]")  # fmt: skip
     return Table("Wet modes and peaks of the sound power", heads, tuple(rows), note)
 
 
@@ -159,10 +159,22 @@ def _run(summary: Summary) -> Table:
         ("Unknowns", str(summary.unknowns)),
         ("Time [s]", stages),
         ("Solvers", "; ".join(summary.run.solvers)),
-        *(("Change of solver", event) for event in summary.run.fallbacks),
+        *(("Change of solver", text) for text in _condensed(summary.run.fallbacks)),
         ("Version", f"quietblade {summary.run.code_version} on {summary.run.platform}"),
     ]
     return Table("Run", (), tuple(rows))
+
+
+def _condensed(events: Iterable[str]) -> list[str]:
+    """Events that differ only in what follows the last colon, counted."""
+    reasons: dict[str, list[str]] = {}
+    for event in events:
+        head, _, reason = event.rpartition(": ")
+        reasons.setdefault(head, []).append(reason)
+    return [
+        f"{head}: {found[0]}" + (f" (first of {len(found)} times)" if len(found) > 1 else "")
+        for head, found in reasons.items()
+    ]
 
 
 def _times(factor: float, value: float | None) -> float | None:

@@ -26,9 +26,7 @@ def write_static_fields(case: Case, mesh: Mesh, statics: Statics, folder: RunFol
     ]
     if statics.shear is not None:
         axes = ply_axes(0.0, *section_directions(translate.blade_angle_field(case)))
-        strain = nodal_strain(
-            statics.structure, statics.state.structure, axes, region="film"
-        )
+        strain = nodal_strain(statics.structure, statics.state.structure, axes, region="film")
         fields.append(PointField("film_shear_strain", 2.0 * np.hypot(strain[:, 3], strain[:, 4])))
     cells = {name: blocks for name, blocks in mesh.cells.items() if name != "water"}
     write_fields(folder.static_fields, mesh.nodes, cells, fields)

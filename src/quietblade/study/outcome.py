@@ -3,10 +3,12 @@
 
 import platform
 from collections.abc import Mapping
+from dataclasses import replace
 from datetime import UTC, datetime
 from importlib.metadata import version
 
 import numpy as np
+from scipy.sparse import csr_matrix, diags_array
 
 from quietblade import __version__
 from quietblade.case import Case
@@ -32,17 +34,7 @@ def static_result(statics: Statics) -> model.StaticResult:
     state = statics.state
     flows = (state.rigid, state.chained, state.coupled)
     total = [flow.total for flow in flows]
-    shear = statics.shear
-    film = (
-        {}
-        if shear is None
-        else {
-            "max_film_shear_strain": shear.maximum,
-            "film_shear_strain_p99": shear.percentile(99.0),
-            "max_film_shear_strain_place": shear.place,
-        }
-    )
-    return model.StaticResult(
+    result = model.StaticResult(
         history=_history(state),
         newton=_newton(state),
         sections=_section_curves(flows),
@@ -55,7 +47,16 @@ def static_result(statics: Statics) -> model.StaticResult:
         torque=np.array([t.torque for t in total]),
         tolerance=state.tolerance,
         converged=state.converged,
-        **film,
+        max_blade_shear_strain=statics.blade_shear,
+    )
+    shear = statics.shear
+    if shear is None:
+        return result
+    return replace(
+        result,
+        max_film_shear_strain=shear.maximum,
+        film_shear_strain_p99=shear.percentile(99.0),
+        max_film_shear_strain_place=shear.place,
     )
 
 
@@ -138,13 +139,13 @@ def _mode_table(vibration: Vibration, other: Vibration | None) -> model.ModeTabl
     loss, radiation = modes.loss_factor.copy(), np.full(len(modes.frequency), np.nan)
     good = damped.converged
     loss[damped.start[good]] = damped.loss_factor[good]
-    radiation[damped.start[good]] = (
-        damped.loss_factor[good] - modes.loss_factor[damped.start[good]]
-    )
+    radiation[damped.start[good]] = damped.loss_factor[good] - modes.loss_factor[damped.start[good]]
     work = np.abs(modes.vectors @ vibration.load)
     partner, likeness = ("",) * len(loss), np.full(len(loss), np.nan)
     if other is not None:
-        found = match(modes.vectors, other.modes.vectors, vibration.operators.terms["M"])
+        # each in the axes of its own sections: the bent blade carries its shapes with it
+        own, theirs = (v.shapes.reshape(len(v.shapes), -1) for v in (vibration, other))
+        found = match(own, theirs, csr_matrix(diags_array(np.repeat(vibration.masses, 3))))
         names = other.naming.name
         partner = tuple(names[k] if k >= 0 else "" for k in found.partner)
         likeness = found.assurance
@@ -178,7 +179,7 @@ def _spectrum(case: Case, vibration: Vibration, sound: Sound) -> model.Spectrum:
 
 
 def mesh_result(mesh: Mesh, vibration: Vibration) -> model.MeshResult:
-    """The mesh in figures."""
+    """Put the mesh in figures."""
     census = [
         (region, kind, count)
         for region, kinds in mesh.census().items()

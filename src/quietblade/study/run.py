@@ -3,7 +3,6 @@
 
 import hashlib
 from itertools import chain
-from pathlib import Path
 
 import ngsolve as ngs
 
@@ -33,7 +32,7 @@ def run_key(case: Case) -> str:
 
 
 def finished(case: Case, folder: RunFolder) -> Result | None:
-    """Result of this very case, if the folder holds it whole."""
+    """Load the result of this very case, if the folder holds it whole."""
     try:
         result = folder.load()
     except ResultError:
@@ -92,7 +91,7 @@ def run_case(case: Case, folder: RunFolder, progress: Progress = silent) -> Resu
         *chain.from_iterable(_step2_notices(motions[n], vibrations[n], sounds[n]) for n in motions),
     )
     reports = {
-        "flow and structure": statics.structure.solver.report(),
+        "flow and structure": statics.solver,
         **{f"modes {name}": vibration.solver for name, vibration in vibrations.items()},
         **{f"sweep {name}": sound.response.report for name, sound in sounds.items()},
     }
@@ -109,7 +108,7 @@ def run_case(case: Case, folder: RunFolder, progress: Progress = silent) -> Resu
         },
         mesh=outcome.mesh_result(mesh, next(iter(vibrations.values()))),
         run=outcome.run_record(
-            Path(case.file).read_text(encoding="utf-8"),
+            case.text,
             run_key(case),
             clock.seconds,
             reports,
@@ -133,7 +132,7 @@ def paper_blade(case: Case) -> str:
 
 
 def _stated(case: Case) -> tuple[object, ...]:
-    """What the paper says of its blades."""
+    """Tell apart what the paper says of its blades."""
     plain = case.plain()
     shape = {k: plain["blade"][k] for k in ("hub_radius", "span", "chord", "thickness", "camber")}
     flow = plain["flow"]["speed"], plain["flow"]["rotation"]

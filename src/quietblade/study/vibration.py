@@ -10,7 +10,13 @@ from scipy.interpolate import make_interp_spline
 from quietblade.case import Case
 from quietblade.errors import Notice
 from quietblade.geometry import Blade
-from quietblade.linalg import Precision, SolverChain, SolverReport, make_solver
+from quietblade.linalg import (
+    Precision,
+    SolverChain,
+    SolverReport,
+    default_threads,
+    make_solver,
+)
 from quietblade.mesh import Mesh
 from quietblade.mesh.motion import MeshMotion
 from quietblade.mesh.surface import SurfaceQuadrature
@@ -56,8 +62,12 @@ class Vibration:
         Nodes of the mesh in this configuration [m].
     modes : WetModes
         Real modes, also somewhat above the band.
+    shapes : (m, solid nodes, 3) float array
+        Their motion in the axes of the (deformed) sections: chordwise, normal, along the span.
+    masses : (solid nodes,) float array
+        Mass that each node stands for, up to a common factor.
     naming : Naming
-        Their names.
+        Names of the modes by that motion.
     damped : ComplexModes
         Modes of the band with loss, compressibility and radiation.
     solver : SolverReport
@@ -72,6 +82,8 @@ class Vibration:
     sources: SurfaceSources
     positions: FloatArray
     modes: WetModes
+    shapes: FloatArray
+    masses: FloatArray
     naming: Naming
     damped: ComplexModes
     solver: SolverReport
@@ -129,7 +141,12 @@ def solve_vibration(
     low, high = case.acoustics.band
     modes = wet_modes(operators, ABOVE_BAND * high, solver=exact, progress=progress)
     progress(name, 0.6, f"{len(modes.frequency)} wet modes")
-    naming = _name(blade, mesh, operators, modes, statics if motion is not None else None)
+    solid = mesh.basis.nodes_of("|".join(region for region in mesh.cells if region != "water"))
+    s, xi, _ = blade.locate(mesh.nodes[solid])
+    axes = _section_axes(blade, s, statics if motion is not None else None)
+    moved = nodal_shapes(mesh, operators, modes.vectors)[:, solid]
+    shapes = np.einsum("nai,mni->mna", axes, moved)
+    masses = _nodal_masses(mesh, operators)[solid]
     reach = (low / 1.02, high * 1.02)
     damped = complex_modes(operators, modes, reach, solver=_solver(case), progress=progress)
     return Vibration(
@@ -140,7 +157,9 @@ def solve_vibration(
         sources=sources,
         positions=positions,
         modes=modes,
-        naming=naming,
+        shapes=shapes,
+        masses=masses,
+        naming=name_modes(s, xi, shapes, masses),
         damped=damped,
         solver=exact.report(),
         notices=(
@@ -170,8 +189,14 @@ def solve_sound(
 ) -> Sound:
     """Sweep the band with a direct solve at each frequency, and find the powers."""
     operators = vibration.operators
+    workers = default_threads()  # factors side by side use the cores better than one in parts
     response = solve_response(
-        operators, frequency, vibration.load, solver=_solver(case), progress=progress
+        operators,
+        frequency,
+        vibration.load,
+        solver=_solver(case, threads=1),
+        workers=workers,
+        progress=progress,
     )
     assert response.solution is not None  # nothing observed: the solutions are kept
     budget = power_budget(operators, response.omega, response.solution, vibration.load)
@@ -179,11 +204,14 @@ def solve_sound(
     return Sound(response, budget, multipoles)
 
 
-def _solver(case: Case, *, precision: Precision | None = None) -> SolverChain:
+def _solver(
+    case: Case, *, precision: Precision | None = None, threads: int | None = None
+) -> SolverChain:
     return make_solver(
         case.solver.name,
         precision=precision or case.solver.precision,
         tolerance=case.solver.tolerance,
+        threads=threads,
     )
 
 
@@ -200,23 +228,15 @@ def nodal_shapes(mesh: Mesh, operators: Operators, vectors: AnyArray) -> AnyArra
     return np.array([mesh.basis.to_values(row) for row in full])
 
 
-def _name(
-    blade: Blade, mesh: Mesh, operators: Operators, modes: WetModes, statics: Statics | None
-) -> Naming:
-    """Name modes by the motion of the sections, in the axes of the (deformed) sections."""
-    solid = mesh.basis.nodes_of("|".join(name for name in mesh.cells if name != "water"))
-    s, xi, _ = blade.locate(mesh.nodes[solid])
+def _section_axes(blade: Blade, s: FloatArray, statics: Statics | None) -> FloatArray:
+    """Rows chordwise, normal and along the span at span fractions, (n, 3, 3), on C0 or C1."""
     if statics is None:
         _, chordwise, normal = blade.frame(s)
-        axes = np.stack([chordwise, normal, np.cross(chordwise, normal)], axis=1)
-    else:
-        sections = statics.state.coupled.sections
-        frames = np.stack([sections.chord_direction, sections.normal, sections.tangent], axis=1)
-        stations = np.linspace(0.0, 1.0, len(frames))
-        axes = make_interp_spline(stations, frames, k=1)(np.clip(s, 0.0, 1.0))
-    shapes = nodal_shapes(mesh, operators, modes.vectors)[:, solid]
-    local = np.einsum("nai,mni->mna", axes, shapes)
-    return name_modes(s, xi, local, _nodal_masses(mesh, operators)[solid])
+        return np.stack([chordwise, normal, np.cross(chordwise, normal)], axis=1)
+    sections = statics.state.coupled.sections
+    frames = np.stack([sections.chord_direction, sections.normal, sections.tangent], axis=1)
+    stations = np.linspace(0.0, 1.0, len(frames))
+    return np.asarray(make_interp_spline(stations, frames, k=1)(np.clip(s, 0.0, 1.0)))
 
 
 def _nodal_masses(mesh: Mesh, operators: Operators) -> FloatArray:

@@ -1,23 +1,22 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Complex modes of the damped, radiating system A(Omega) x = 0 (theory: S2-7)."""
 
-import itertools
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.optimize import linear_sum_assignment
 
 from quietblade.errors import Notice, SolverError
 from quietblade.linalg import SparseSolver, make_solver
 from quietblade.typing import BoolArray, ComplexArray, FloatArray, IntArray, Progress, silent
-from quietblade.vibroacoustics.matching import assurance
 from quietblade.vibroacoustics.modes import WetModes, unknowns
 from quietblade.vibroacoustics.operators import Operators
+from quietblade.vibroacoustics.projection import Projection, mass_assurance, times
 
+_GROUP = 1.2  # ratio of the highest to the lowest frequency that share a factorisation
+_ASIDE = 1.0 + 0.01j  # of the factored omega from the modes: A there is not nearly singular
 _SAME = 0.25  # assurance below which a mode is not the one that was looked for
-_TWIN = 1e-6  # relative distance of two Omega that may be one mode
-_OFFSET = 1.001  # of the factored omega from the expected mode: A there is not nearly singular
-_DIFFERENCE = 1e-4  # relative step of derivatives by omega; exact for factors of second degree
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,11 +31,11 @@ class ComplexModes:
         Omega [rad/s].
     vectors : (m, n) complex array
         Displacement, film pressure and potential psi on the free unknowns, scaled to
-        x^T A'(Omega) x = -2 Omega: the modal mass is one without damping, and
-        A(omega)^-1 is near x x^T / (2 Omega (Omega - omega)) by a light mode.
+        x^T A'(Omega) x = -2 Omega: the modal mass is one without damping, and A(omega)^-1 near a
+        light mode is x x^T / (2 Omega (Omega - omega)).
     residual : (m,) array
-        ``||A(sigma)^-1 A(Omega) x|| / ||x||`` in the displacement, sigma the real mode's omega:
-        the size of the change that one more iteration would make.
+        ``||A(sigma)^-1 A(Omega) x|| / ||x||`` in the structure's mass, at a sigma close by: the
+        size of the change that one more iteration would make.
     overlap : (m,) array
         Modal assurance (mass of the structure) between the mode and the one it started from.
     converged : (m,) bool array
@@ -69,16 +68,6 @@ class ComplexModes:
         return np.asarray(2.0 * self.omega.imag / self.omega.real)
 
 
-@dataclass(frozen=True)
-class _Mode:
-    """Outcome of one iteration."""
-
-    omega: complex
-    vector: ComplexArray
-    residual: float
-    failure: str = ""
-
-
 def complex_modes(
     operators: Operators,
     modes: WetModes,
@@ -86,146 +75,179 @@ def complex_modes(
     *,
     solver: SparseSolver | None = None,
     tolerance: float = 1e-8,
-    iterations: int = 20,
+    iterations: int = 8,
     progress: Progress = silent,
 ) -> ComplexModes:
     """Complex modes that belong to the real modes in a band.
 
-    Residual inverse iteration (A. Neumaier, SIAM J. Numer. Anal. 22 (1985) 914-923): one
-    factorisation a mode, Omega from the functional x^T A(Omega) x = 0, which for a complex
-    symmetric A is in error by the square of the vector's error.
+    Residual inverse iteration (A. Neumaier, SIAM J. Numer. Anal. 22 (1985) 914-923) of a group of
+    modes at once, with the eigenproblem solved anew on the space of all vectors so far (H. Voss,
+    BIT 44 (2004) 387-401).  The space holds all real modes from the beginning, so that close and
+    coupled modes do not disturb each other, and one factorisation serves a group.  A radiation
+    condition whose factors are not of second degree in omega limits what can be reached; the
+    residual tells.
 
     Parameters
     ----------
     operators : Operators
         A(omega) with everything in it: loss, compressibility, radiation.
     modes : WetModes
-        Real modes to start from.
+        Real modes to start from; those outside the band help the ones inside.
     band : (float, float)
         Lowest and highest real frequency [Hz] of the modes to refine.
     solver : SparseSolver, optional
-        Symmetric; in double precision unless given, because A is factored close to a mode.
+        Symmetric.
     tolerance : float
         Largest `ComplexModes.residual` of a converged mode; Omega is then good to its square.
     iterations : int
-        Most iterations a mode.
+        Most iterations with one factorisation.
     progress : Progress
-        Called before each mode.
+        Called before each group.
     """
-    chosen = make_solver(precision="double") if solver is None else solver
-    rows = np.flatnonzero((modes.frequency >= max(band[0], 0.0)) & (modes.frequency <= band[1]))
+    chosen = make_solver() if solver is None else solver
+    rows = np.flatnonzero((modes.frequency >= band[0]) & (modes.frequency <= band[1]))
     rows = rows[modes.frequency[rows] > 0.0]
-    starts = unknowns(modes, operators)[rows]
-    found = []
-    for done, row in enumerate(rows):
-        frequency = float(modes.frequency[row])
-        progress("complex modes", done / len(rows), f"from {frequency:.4g} Hz")
-        omega = 2.0 * np.pi * frequency
-        found.append(_refined(operators, omega, starts[done], chosen, tolerance, iterations))
-    return _collected(operators, rows, starts, found, tolerance)
+    starts = unknowns(modes, operators)
+    space = Projection(operators)
+    space.extend(starts[modes.frequency > 0.0])
+    found: list[_Mode] = []
+    for group in _groups(modes.frequency[rows]):
+        members = rows[group]
+        low, high = modes.frequency[members[0]], modes.frequency[members[-1]]
+        progress("complex modes", len(found) / len(rows), f"{low:.4g} to {high:.4g} Hz")
+        omega = 2.0 * np.pi * modes.frequency[members]
+        search = _Search(operators, space.copy(), omega, starts[members], tolerance)
+        found += search.run(chosen, iterations)
+    return _collected(operators, rows, found, tolerance)
 
 
-class _Forms:
-    """A(omega) x and its derivative, from the products of each term with one vector."""
+@dataclass(frozen=True, eq=False)
+class _Mode:
+    """Outcome of the iteration of one mode."""
 
-    def __init__(self, operators: Operators, x: ComplexArray) -> None:
-        self._operators = operators
-        self._x = x
-        names = operators.factors(1.0)
-        self._products = {name: operators.terms[name] @ x for name in names}
-        self._values = {name: complex(x @ product) for name, product in self._products.items()}
+    omega: complex
+    vector: ComplexArray
+    residual: float
+    overlap: float
+    failure: str = ""
 
-    def at(self, omega: complex) -> ComplexArray:
+
+def _groups(frequency: FloatArray) -> list[slice]:
+    """Split ascending frequencies into runs that are close enough for one factorisation."""
+    groups: list[slice] = []
+    first = 0
+    for index in range(1, len(frequency) + 1):
+        if index == len(frequency) or frequency[index] > _GROUP * frequency[first]:
+            groups.append(slice(first, index))
+            first = index
+    return groups
+
+
+class _Search:
+    """The iteration of one group of modes on a growing space."""
+
+    def __init__(
+        self,
+        operators: Operators,
+        space: Projection,
+        start: FloatArray,
+        vectors: ComplexArray,
+        tolerance: float,
+    ) -> None:
+        self._operators, self._space, self._tolerance = operators, space, tolerance
+        self._start, self._vectors = start, vectors
+        self._omega = start.astype(complex)
+        self._coordinates: list[ComplexArray] = [np.zeros(0, dtype=complex)] * len(start)
+        self._overlap = np.zeros(len(start))
+        self._change = np.full(len(start), np.inf)
+
+    def run(self, solver: SparseSolver, iterations: int) -> list[_Mode]:
+        """Iterate with one factorisation, then with one more for each mode that needs it."""
+        failure = ""
+        try:
+            self._renew()
+            self._iterate(solver, complex(np.mean(self._omega.real)), iterations)
+            for index in np.flatnonzero(self._change > self._tolerance):
+                if self._change[index] > self._tolerance:
+                    self._iterate(solver, complex(self._omega[index]), iterations)
+        except SolverError as error:
+            failure = str(error)
+        return [
+            _Mode(
+                complex(self._omega[index]),
+                self._scaled(index),
+                float(self._change[index]),
+                float(self._overlap[index]),
+                failure if self._change[index] > self._tolerance else "",
+            )
+            for index in range(len(self._omega))
+        ]
+
+    def _iterate(self, solver: SparseSolver, omega: complex, iterations: int) -> None:
+        factor = solver.factor(self._operators.at(_ASIDE * omega))
+        for _ in range(iterations):
+            active = np.flatnonzero(self._change > self._tolerance)
+            vectors = [self._space.lift(self._coordinates[index]) for index in active]
+            defects = [
+                self._applied(self._omega[index], x)
+                for index, x in zip(active, vectors, strict=True)
+            ]
+            steps = factor.solve(np.stack(defects, axis=1)).T
+            self._change[active] = [
+                self._size(z) / self._size(x) for z, x in zip(steps, vectors, strict=True)
+            ]
+            wanted = self._change[active] > self._tolerance
+            if not wanted.any():
+                return
+            self._space.extend(steps[wanted])
+            self._renew()
+
+    def _renew(self) -> None:
+        """Eigenpairs on the space, for the modes that have not converged.
+
+        All modes of the group take part in the choice, so that no two become one.
+        """
+        centre = float(np.sqrt(self._start[0] * self._start[-1]))
+        values, coordinates = self._space.eigenpairs(centre)
+        near = (values.real > 0.5 * centre) & (values.real < 2.0 * centre)
+        values, coordinates = values[near], coordinates[near]
+        solid = self._space.structural
+        starts = np.array([self._space.coordinates(vector)[solid] for vector in self._vectors])
+        alike = mass_assurance(starts, coordinates[:, solid])
+        # Waves between blade and sphere may carry the same motion at another frequency.
+        distance = np.abs(values / self._start[:, None] - 1.0)
+        pairs = zip(*linear_sum_assignment(alike - distance, maximize=True), strict=True)
+        for index, column in pairs:
+            if self._change[index] > self._tolerance:
+                self._omega[index] = values[column]
+                self._coordinates[index] = coordinates[column]
+                self._overlap[index] = alike[index, column]
+
+    def _applied(self, omega: complex, x: ComplexArray) -> ComplexArray:
         """A(omega) x."""
-        return self._sum(self._operators.factors(omega))
-
-    def slope(self, omega: complex) -> ComplexArray:
-        """A'(omega) x."""
-        return self._sum(self._derivatives(omega))
-
-    def root(self, omega: complex) -> complex:
-        """Zero of x^T A(omega) x near omega, by Newton's method."""
-        for _ in range(30):
-            value = self._scalar(self._operators.factors(omega))
-            step = value / self._scalar(self._derivatives(omega))
-            omega -= step
-            if abs(step) <= 1e-14 * abs(omega):
-                break
-        return omega
-
-    def _derivatives(self, omega: complex) -> dict[str, complex]:
-        h = _DIFFERENCE * abs(omega)
-        above, below = self._operators.factors(omega + h), self._operators.factors(omega - h)
-        return {name: (above[name] - below[name]) / (2.0 * h) for name in above}
-
-    def _sum(self, factors: Mapping[str, complex]) -> ComplexArray:
-        total = np.zeros(self._x.shape, dtype=complex)
-        for name, factor in factors.items():
-            total += factor * self._products[name]
+        total = np.zeros(x.shape, dtype=complex)
+        for name, factor in self._operators.factors(omega).items():
+            total += factor * times(self._operators.terms[name], x)
         return total
 
-    def _scalar(self, factors: Mapping[str, complex]) -> complex:
-        return sum(factor * self._values[name] for name, factor in factors.items())
+    def _size(self, x: ComplexArray) -> float:
+        return float(np.sqrt(np.vdot(x, times(self._operators.terms["M"], x)).real))
 
-
-def _refined(
-    operators: Operators,
-    omega: complex,
-    x: ComplexArray,
-    solver: SparseSolver,
-    tolerance: float,
-    iterations: int,
-) -> _Mode:
-    """One complex mode by residual inverse iteration."""
-    u = operators.blocks.u
-    forms = _Forms(operators, x)
-    omega = forms.root(omega)
-    sigma = _OFFSET * omega
-    try:
-        factor = solver.factor(operators.at(sigma))
-        for _ in range(iterations):
-            change = factor.solve(forms.at(omega))
-            slope = forms.slope(omega)
-            # The part along x only rescales it; near the pole it is large and full of rounding.
-            change -= x * ((slope @ change) / (slope @ x))
-            x = x - change
-            residual = float(np.linalg.norm(change[u]) / np.linalg.norm(x[u]))
-            forms = _Forms(operators, x)
-            omega = forms.root(omega)
-            if residual <= tolerance:
-                break
-    except SolverError as error:
-        return _Mode(omega, x, np.inf, str(error))
-    mass = complex(x @ forms.slope(omega)) / (-2.0 * omega)
-    return _Mode(omega, x / np.sqrt(mass), residual)
+    def _scaled(self, index: int) -> ComplexArray:
+        """Vector with x^T A'(omega) x = -2 omega; the difference is exact for second degree."""
+        omega, coordinates = self._omega[index], np.zeros(self._space.size, dtype=complex)
+        coordinates[: len(self._coordinates[index])] = self._coordinates[index]
+        h = 1e-4 * abs(omega)
+        slope = (self._space.at(omega + h) - self._space.at(omega - h)) / (2.0 * h)
+        mass = complex(coordinates @ slope @ coordinates) / (-2.0 * omega)
+        return self._space.lift(coordinates / np.sqrt(mass))
 
 
 def _collected(
-    operators: Operators,
-    rows: IntArray,
-    starts: ComplexArray,
-    found: Sequence[_Mode],
-    tolerance: float,
+    operators: Operators, rows: IntArray, found: Sequence[_Mode], tolerance: float
 ) -> ComplexModes:
     """Put the modes side by side and say which of them cannot be trusted."""
-    vectors = np.array([mode.vector for mode in found], dtype=complex)
-    vectors = vectors.reshape(len(found), operators.size)
-    mass = operators.terms["M"]
-    overlap = np.array(
-        [
-            assurance(start[None], end[None], mass)[0, 0]
-            for start, end in zip(starts, vectors, strict=True)
-        ]
-    )
-    reasons = [
-        _doubt(mode, tolerance, float(same)) for mode, same in zip(found, overlap, strict=True)
-    ]
-    alike = assurance(vectors, vectors, mass)
-    for one, two in itertools.combinations(range(len(found)), 2):
-        near = abs(found[one].omega - found[two].omega) <= _TWIN * abs(found[one].omega)
-        if near and alike[one, two] > 0.99 and not reasons[one] and not reasons[two]:
-            worse = one if overlap[one] < overlap[two] else two
-            reasons[worse] = "the iteration ended at the mode of another start"
+    reasons = [_doubt(mode, tolerance) for mode in found]
     notices = tuple(
         Notice(
             f"complex mode from the real mode {row}",
@@ -237,23 +259,24 @@ def _collected(
         for row, mode, reason in zip(rows, found, reasons, strict=True)
         if reason
     )
+    vectors = np.array([mode.vector for mode in found], dtype=complex)
     return ComplexModes(
         omega=np.array([mode.omega for mode in found], dtype=complex),
-        vectors=vectors,
+        vectors=vectors.reshape(len(found), operators.size),
         residual=np.array([mode.residual for mode in found]),
-        overlap=overlap,
+        overlap=np.array([mode.overlap for mode in found]),
         converged=np.array([not reason for reason in reasons], dtype=bool),
         start=rows,
         notices=notices,
     )
 
 
-def _doubt(mode: _Mode, tolerance: float, overlap: float) -> str:
+def _doubt(mode: _Mode, tolerance: float) -> str:
     """Why a mode cannot be trusted; empty if it can."""
     if mode.failure:
         return mode.failure
-    if mode.residual > tolerance:
+    if not mode.residual <= tolerance:
         return "the iteration did not converge"
-    if overlap < _SAME:
-        return f"the mode has little in common with its start (assurance {overlap:.2f})"
+    if mode.overlap < _SAME:
+        return f"the mode has little in common with its start (assurance {mode.overlap:.2f})"
     return ""

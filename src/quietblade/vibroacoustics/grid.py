@@ -5,6 +5,7 @@ import numpy as np
 
 from quietblade.typing import FloatArray
 
+_CORE = 0.75  # largest step of t: the first point beside a peak is 2.2 dB below it
 _NEAREST = 1e-2  # of the half-width: points of the grid that are closer are one point
 
 
@@ -17,8 +18,8 @@ def refined_grid(
     """Even grid with more points around each mode, one of them at its peak.
 
     The points of a mode lie at f + f eta/2 sinh(t) with evenly spaced t: even within the
-    half-power width f eta, and in geometric steps from there until they meet the even grid, along
-    which the level of a needle falls by equal parts.
+    half-power width f eta, three of them at least, and from there in geometric steps, along which
+    the level of a needle falls by equal parts, until they meet the even grid or are used up.
 
     Parameters
     ----------
@@ -56,12 +57,11 @@ def refined_grid(
     half_width = 0.5 * frequency * np.abs(loss)
     # A mode without loss has no width; a millionth still shows where it is.
     half_width = np.maximum(half_width, 0.5e-6 * frequency)
-    side = np.arange(-(points_per_mode // 2), points_per_mode // 2 + 1) / max(
-        points_per_mode // 2, 1
-    )
-    reach = np.arcsinh(np.maximum(step / half_width, 1.0))
-    around = frequency[:, None] + half_width[:, None] * np.sinh(reach[:, None] * side)
-    around[:, points_per_mode // 2] = frequency
+    half = points_per_mode // 2
+    reach = np.arcsinh(np.maximum(step / half_width, 1.0)) / max(half, 1)
+    steps = np.minimum(reach, _CORE)[:, None] * np.arange(-half, half + 1)
+    around = frequency[:, None] + half_width[:, None] * np.sinh(steps)
+    around[:, half] = frequency
     inside = (around >= low) & (around <= high)
     kept = around[inside]
     gap = np.broadcast_to(_NEAREST * half_width[:, None], around.shape)[inside]

@@ -23,7 +23,7 @@ from quietblade.vibroacoustics.operators import Operators
 
 _TOLERANCE = 1e-11  # of the solves inside Lanczos' method: they bound the modes' accuracy
 _RIGID = 1e-6  # of the highest s: below it a motion takes no elastic energy
-_NUDGE = 1.0 + 1e-5  # of a shift that hits a mode
+_NUDGE = 1.0 + 1e-5  # of a shift that cannot be used
 
 
 @dataclass(frozen=True, eq=False)
@@ -179,11 +179,13 @@ def solve_modes(
     shift = (2.0 * np.pi * highest) ** 2
     progress("modes", None, f"factorisation at {highest:g} Hz")
     factor, count = _counted(pencil, shift, chosen)
-    if factor.inertia is not None and factor.inertia[2]:
-        shift *= _NUDGE
-        factor, count = _counted(pencil, shift, chosen)
     progress("modes", None, f"{count} modes below {highest:g} Hz")
-    vectors = _lowest(pencil, factor, shift, count) if count else np.zeros((0, factor.n))
+    try:
+        vectors = _lowest(pencil, factor, shift, count)
+    except SolverError:
+        # The limit is a mode, or as good as one: step aside.
+        factor, count = _counted(pencil, shift * _NUDGE, chosen)
+        vectors = _lowest(pencil, factor, shift * _NUDGE, count)
     return _judged(pencil, loss, vectors, highest, count, factor.solver)
 
 
@@ -201,6 +203,8 @@ def _counted(pencil: Pencil, shift: float, solver: SparseSolver) -> tuple[Factor
 def _lowest(pencil: Pencil, factor: Factorization, shift: float, count: int) -> FloatArray:
     """Vectors of the modes below the shift, (count, n)."""
     n = factor.n
+    if count == 0:
+        return np.zeros((0, n))
 
     def inverse(force: FloatArray) -> FloatArray:
         # Zero in the water's rows keeps H' phi = C^T u exactly; film pressure carries no mass.
@@ -210,9 +214,13 @@ def _lowest(pencil: Pencil, factor: Factorization, shift: float, count: int) -> 
         return np.asarray(factor.solve(force))
 
     start = inverse(np.random.default_rng(0).standard_normal(n))
-    steps = min(n, max(2 * count + 20, 40))
-    if count >= n - 1 or steps <= count:
-        raise ConvergenceError(f"modes: {count} of {n} unknowns are too many for Lanczos' method")
+    moving = n - len(pencil.film) - len(pencil.water)
+    steps = min(moving - 1, max(2 * count + 20, 40))
+    if steps < count + 2:
+        raise ConvergenceError(
+            f"modes: {count} modes of {moving} moving unknowns are too many for Lanczos' method; "
+            "lower the highest frequency"
+        )
     try:
         _, vectors = eigsh(
             pencil.stiffness,
@@ -222,7 +230,7 @@ def _lowest(pencil: Pencil, factor: Factorization, shift: float, count: int) -> 
             which="SA",
             v0=start,
             ncv=steps,
-            maxiter=20,
+            maxiter=100,
             tol=1e-10,
             OPinv=LinearOperator((n, n), matvec=inverse, dtype=np.dtype(float)),
         )

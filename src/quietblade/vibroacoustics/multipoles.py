@@ -13,7 +13,7 @@ from typing import Self
 
 import ngsolve as ngs
 import numpy as np
-from scipy.sparse import coo_array, csr_matrix
+from scipy.sparse import csr_matrix
 
 from quietblade.errors import Notice
 from quietblade.mesh.nodal import NodalBasis

@@ -88,16 +88,10 @@ def draw_convergence(result: Result) -> Figure:
     figure = new_figure(2.6)
     left, right = figure.subplots(1, 2)
     left.semilogy(passes, history.relative_change, "o-", color=BLUE, markersize=3.5)
-    left.axhline(tolerance, color=GREY, linestyle="--", linewidth=1.0)
-    left.annotate(
-        f"tolerance {tolerance:.0e}",
-        (1.0, tolerance),
-        xycoords=("axes fraction", "data"),
-        xytext=(0, 3),
-        textcoords="offset points",
-        ha="right",
-        color=GREY,
+    left.axhline(
+        tolerance, color=GREY, linestyle="--", linewidth=1.0, label=f"tolerance {tolerance:.0e}"
     )
+    left.legend(loc="upper right")
     verdict = "converged" if result.static.converged else "NOT converged"
     left.set(
         xlabel="Pass of the coupling [–]",

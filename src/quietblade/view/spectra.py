@@ -53,7 +53,7 @@ def draw_sound_power(result: Result, pictures: Mapping[str, AnyArray] | None = N
         _Curve(_TITLES[name], configuration, CONFIGURATION[name])
         for name, configuration in result.configurations.items()
     ]
-    return _draw_spectra(curves, f"Sound power, {result.title}", pictures or {})
+    return _draw_spectra(curves, f"Sound power: {result.title}", pictures or {})
 
 
 @styled
@@ -80,42 +80,44 @@ def draw_power_paths(result: Result) -> Figure:
         ax.plot(f, _level(spectrum.dissipated), color=GREEN, linestyle=(0, (5, 1.5, 1, 1.5)),
                 label="dissipated in the film")  # fmt: skip
         ax.plot(f, radiated[path("sphere")], **CONFIGURATION["C0"].options(),
-                label=f"radiated, sphere ({configuration.radiation_condition})")  # fmt: skip
+                label="radiated, sphere")  # fmt: skip
         ax.plot(f, radiated[path("multipoles")], color=VERMILION, linestyle=(0, (1.2, 1.2)),
                 label="radiated, multipoles")  # fmt: skip
-        ax.set(title=_TITLES[name], xlim=(f[0], f[-1]), ylabel="Power level\n[dB re 1 pW]")
-        _keep_readable(ax, [_level(spectrum.injected), *radiated])
-    axes[0].legend(loc="lower left", bbox_to_anchor=(0.25, 1.0), ncols=2)
+        title = f"{_TITLES[name]}; {_radiation_note(configuration)}"
+        ax.set(title=title, xlim=(f[0], f[-1]), ylabel="Power level\n[dB re 1 pW]")
+        _keep_readable(ax, list(radiated), above=_level(spectrum.injected))
+    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=4)
     axes[-1].set_xlabel(_FREQUENCY)
     return figure
 
 
 def _draw_spectra(curves: Sequence[_Curve], title: str, pictures: Mapping[str, AnyArray]) -> Figure:
     shown = _peaks_with_picture(curves, pictures)
-    figure = new_figure(4.7 if shown else 3.4)
-    grid = figure.add_gridspec(2 if shown else 1, 1, height_ratios=[0.3, 1.0] if shown else [1.0])
+    figure = new_figure(4.9 if shown else 3.6)
+    grid = figure.add_gridspec(2 if shown else 1, 1, height_ratios=[0.28, 1.0] if shown else [1.0])
     axes = figure.add_subplot(grid[-1])
-    for curve in curves:
-        spectrum = curve.configuration.spectrum
-        level = spectrum.power_level[path("sphere")]
-        axes.plot(spectrum.frequency, level, label=curve.label, **curve.stroke.options())
+    figure.suptitle(title, x=0.01, ha="left", fontsize=9.0)
     axes.set(xlabel=_FREQUENCY, ylabel=_LEVEL)
     if not curves:
         return figure
+    levels = [curve.configuration.spectrum.power_level[path("sphere")] for curve in curves]
     frequency = curves[0].configuration.spectrum.frequency
+    for curve, level in zip(curves, levels, strict=True):
+        f = curve.configuration.spectrum.frequency
+        axes.plot(f, level, label=curve.label, **curve.stroke.options())
     axes.set_xlim(frequency[0], frequency[-1])
-    _keep_readable(axes, [c.configuration.spectrum.power_level[path("sphere")] for c in curves])
-    _name_peaks(axes, curves)
-    axes.legend(loc="lower left", ncols=len(curves))
-    axes.text(
-        1.0, 1.01, _radiation_note(curves[0].configuration), transform=axes.transAxes,
-        ha="right", va="bottom", fontsize=7.5, color="0.35",
-    )  # fmt: skip
+    _keep_readable(axes, levels)
+    tops = _name_peaks(axes, curves)
+    figure.legend(
+        *axes.get_legend_handles_labels(),
+        loc="outside lower center",
+        ncols=len(curves),
+        title="; ".join(dict.fromkeys(_radiation_note(c.configuration) for c in curves)),
+        title_fontsize=7.5,
+    )
     if shown:
-        _draw_pictures(figure, grid[0], axes, [(peak, pictures[peak.mode]) for peak in shown])
-        figure.suptitle(title, x=0.01, ha="left", fontsize=9.0)
-    else:
-        axes.set_title(title)
+        members = [(peak, pictures[peak.mode], tops[peak.mode]) for peak in shown]
+        _draw_pictures(figure, grid[0], axes, members)
     return figure
 
 
@@ -127,38 +129,52 @@ def _radiation_note(configuration: ConfigurationResult) -> str:
     )
 
 
-def _name_peaks(axes: Axes, curves: Sequence[_Curve]) -> None:
-    """Write the names above the peaks; a name close to one that stands there goes higher."""
-    marked = [
-        (peak, curve.stroke.color)
-        for curve in curves
-        for peak in find_peaks(curve.configuration).values()
-    ]
+def _name_peaks(axes: Axes, curves: Sequence[_Curve]) -> dict[str, tuple[float, float]]:
+    """Write the names above the peaks; a name close to one that stands there goes higher.
+
+    Returns
+    -------
+    dict
+        Upper end of the names of the first curve: frequency and level.
+    """
     low, high = axes.get_xlim()
-    room = 0.035 * (high - low)
     bottom, top = axes.get_ylim()
-    step = 0.05 * (top - bottom)
+    width, height = 0.035 * (high - low), 0.05 * (top - bottom)  # of a name
     placed: list[tuple[float, float]] = []
-    for peak, color in sorted(marked, key=lambda item: -item[0].level):
-        height = peak.level + 0.3 * step
-        while any(abs(f - peak.frequency) < room and abs(h - height) < step for f, h in placed):
-            height += 0.5 * step
-        placed.append((peak.frequency, height))
-        axes.plot(peak.frequency, peak.level, ".", color=color, markersize=4.0)
-        axes.text(
-            peak.frequency, height, peak.mode,
-            ha="center", va="bottom", color=color, fontsize=8.0, fontweight="bold",
-        )  # fmt: skip
-    axes.set_ylim(bottom, max([top, *(h + 1.6 * step for _, h in placed)]))
+    first: dict[str, tuple[float, float]] = {}
+    for order, curve in enumerate(curves):
+        for name, peak in find_peaks(curve.configuration).items():
+            axes.plot(peak.frequency, peak.level, ".", color=curve.stroke.color, markersize=4.0)
+            if name in first and abs(first[name][0] - peak.frequency) < 0.35 * width:
+                continue  # all but the same peak has this name already
+            foot = peak.level + 0.3 * height
+            while any(
+                abs(f - peak.frequency) < width and abs(h - foot) < height for f, h in placed
+            ):
+                foot += 0.5 * height
+            placed.append((peak.frequency, foot))
+            if order == 0:
+                first[name] = (peak.frequency, foot + height)
+            axes.text(
+                peak.frequency, foot, name, color=curve.stroke.color,
+                ha="center", va="bottom", fontsize=8.0, fontweight="bold",
+            )  # fmt: skip
+    axes.set_ylim(bottom, max([top, *(foot + 1.6 * height for _, foot in placed)]))
+    return first
 
 
-def _keep_readable(axes: Axes, levels: Sequence[FloatArray]) -> None:
-    """Leave antiresonances below the 60 dB under the highest level outside the axes."""
+def _keep_readable(
+    axes: Axes, levels: Sequence[FloatArray], above: FloatArray | None = None
+) -> None:
+    """Cut what is more than 60 dB below the highest level; ``above`` only raises the upper end."""
     values = np.concatenate(list(levels))
     values = values[np.isfinite(values)]
-    if values.size:
-        top = float(values.max())
-        axes.set_ylim(max(float(values.min()), top - 60.0) - 3.0, top + 2.0)
+    if values.size == 0:
+        return
+    highest = float(values.max())
+    lowest = max(float(values.min()), highest - 60.0)
+    top = highest if above is None else max(highest, float(np.nanmax(above)))
+    axes.set_ylim(lowest - 3.0, top + 2.0)
 
 
 def _level(power: FloatArray) -> FloatArray:
@@ -172,8 +188,8 @@ def _level(power: FloatArray) -> FloatArray:
 def _peaks_with_picture(
     curves: Sequence[_Curve], pictures: Mapping[str, AnyArray]
 ) -> tuple[Peak, ...]:
-    """Peaks at rest that have a picture, at most the six highest, in order of frequency."""
-    if not curves or not pictures:
+    """Peaks of the first curve that have a picture, at most the six highest, by frequency."""
+    if not curves:
         return ()
     peaks = [p for name, p in find_peaks(curves[0].configuration).items() if name in pictures]
     highest = sorted(peaks, key=lambda p: -p.level)[:6]
@@ -181,19 +197,22 @@ def _peaks_with_picture(
 
 
 def _draw_pictures(
-    figure: Figure, strip: SubplotSpec, axes: Axes, shown: Sequence[tuple[Peak, AnyArray]]
+    figure: Figure,
+    strip: SubplotSpec,
+    axes: Axes,
+    members: Sequence[tuple[Peak, AnyArray, tuple[float, float]]],
 ) -> None:
-    """Draw the pictures in a row, each tied to its peak."""
-    row = strip.subgridspec(1, len(shown), wspace=0.05)
-    for column, (peak, picture) in enumerate(shown):
+    """Draw the pictures in a row, each tied to the name of its peak."""
+    row = strip.subgridspec(1, len(members), wspace=0.05)
+    for column, (peak, picture, name_top) in enumerate(members):
         ax = figure.add_subplot(row[0, column])
-        ax.imshow(picture)
+        ax.imshow(picture, interpolation="antialiased")
         ax.set_axis_off()
         ax.set_title(f"{peak.mode}, {peak.frequency:.1f} Hz", fontsize=8.0, loc="center")
         tie = ConnectionPatch(
             xyA=(0.5, 0.0),
             coordsA=ax.transAxes,
-            xyB=(peak.frequency, peak.level),
+            xyB=name_top,
             coordsB=axes.transData,
             color=GREY,
             linewidth=0.6,

@@ -1,0 +1,29 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""``quietblade show``: the headline figures of a run."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from quietblade.cli.common import ExitCode, show_json
+from quietblade.cli.tables import show_tables
+
+
+def show(
+    directory: Annotated[Path, typer.Argument(help="Folder of a run.")],
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print JSON (docs: result-schema) and nothing else.")
+    ] = False,
+) -> ExitCode:
+    """Show the headline figures of a run."""
+    from quietblade.results.headline import summarise  # noqa: PLC0415  # help must stay fast
+    from quietblade.results.store import RunFolder  # noqa: PLC0415
+    from quietblade.results.tables import summary_tables  # noqa: PLC0415
+
+    summary = summarise(RunFolder(directory).load())
+    if as_json:
+        show_json(summary.model_dump(mode="json"))
+    else:
+        show_tables(summary.title, summary_tables(summary))
+    return ExitCode.DONE

@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""All figures of a run, and those that show several runs together, as PNG files."""
+
+from collections.abc import Callable, Mapping, Sequence
+from functools import cache, partial
+from pathlib import Path
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from quietblade.results.files import replacing
+from quietblade.results.model import Result
+from quietblade.results.store import RunFolder
+from quietblade.typing import AnyArray, Progress, silent
+from quietblade.view import scenes, sections, spectra
+from quietblade.view.style import DPI
+
+Drawing = Callable[[], Figure]
+
+
+def draw_figures(folder: RunFolder, progress: Progress = silent) -> tuple[Path, ...]:
+    """Draw every figure of a run into its folder ``figures``.
+
+    Parameters
+    ----------
+    folder : RunFolder
+        A finished run; its result and its VTU files are read, nothing is computed.
+    progress : callable
+
+    Returns
+    -------
+    tuple of Path
+        The files.
+
+    Raises
+    ------
+    ResultError
+        The result or one of its fields is missing.
+    """
+    return _save(folder.figures, _drawings(folder, folder.load()), progress)
+
+
+def draw_joint_figures(
+    folders: Sequence[RunFolder], out: Path, progress: Progress = silent
+) -> tuple[Path, ...]:
+    """Draw the figures that compare several runs.
+
+    Parameters
+    ----------
+    folders : sequence of RunFolder
+        At least two finished runs.
+    out : Path
+        Folder to draw into.
+    progress : callable
+
+    Returns
+    -------
+    tuple of Path
+        The files.
+    """
+    results = [folder.load() for folder in folders]
+    strains = [result.static.max_film_shear_strain for result in results]
+    largest = float(np.nanmax(strains)) if np.any(np.isfinite(strains)) else None
+    drawings: dict[str, Drawing] = {
+        **_section_drawings(results),
+        "sound-power-at-rest": lambda: spectra.draw_sound_power_at_rest(results),
+    }
+    for folder, result in zip(folders, results, strict=True):
+        drawings[f"deformed-{folder.root.resolve().name}"] = _deformed(folder, result, largest)
+    return _save(out, drawings, progress)
+
+
+def _drawings(folder: RunFolder, result: Result) -> Mapping[str, Drawing]:
+    drawings: dict[str, Drawing] = {
+        "mesh": lambda: scenes.draw_mesh(folder),
+        "deformed": _deformed(folder, result, None),
+        **_section_drawings([result]),
+        "convergence": lambda: sections.draw_convergence(result),
+    }
+    if not result.configurations:
+        return drawings
+    pictures = cache(partial(scenes.mode_pictures, folder))
+    for name in result.configurations:
+        drawings[f"mode-shapes-{name}"] = _mode_shapes(result, name, pictures)
+    # the pictures above the peaks are those of the first configuration, at rest as a rule
+    first = next(iter(result.configurations))
+    drawings["sound-power"] = lambda: spectra.draw_sound_power(result, pictures(first))
+    drawings["power-paths"] = lambda: spectra.draw_power_paths(result)
+    return drawings
+
+
+def _section_drawings(results: Sequence[Result]) -> dict[str, Drawing]:
+    return {
+        "mid-section-normalised": lambda: sections.draw_normalised_section(results),
+        "mid-section": lambda: sections.draw_mid_section(results),
+        "blade-angle": lambda: sections.draw_blade_angle(results),
+        "lift-coefficient": lambda: sections.draw_lift_coefficient(results),
+    }
+
+
+def _deformed(folder: RunFolder, result: Result, largest: float | None) -> Drawing:
+    return lambda: scenes.draw_deformed(folder, result, largest)
+
+
+def _mode_shapes(
+    result: Result, name: str, pictures: Callable[[str], Mapping[str, AnyArray]]
+) -> Drawing:
+    return lambda: scenes.draw_mode_shapes(result, name, pictures(name))
+
+
+def _save(out: Path, drawings: Mapping[str, Drawing], progress: Progress) -> tuple[Path, ...]:
+    files = []
+    for done, (name, draw) in enumerate(drawings.items()):
+        progress("figures", done / len(drawings), name)
+        file = out / f"{name}.png"
+        with replacing(file) as temporary:
+            draw().savefig(temporary, dpi=DPI)
+        files.append(file)
+    progress("figures", 1.0, f"{len(files)} files in {out}")
+    return tuple(files)

@@ -1,0 +1,217 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Pictures of the blade: mesh and film, deformation under load, mode shapes.
+
+They are made from the VTU files of a run.
+"""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import pyvista as pv
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.colorbar import Colorbar
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
+
+from quietblade.results.model import Result
+from quietblade.results.store import RunFolder
+from quietblade.results.vtk import CELL_TYPES, field_labels, field_values, read_fields, region
+from quietblade.typing import AnyArray
+from quietblade.view.edges import outer_edges
+from quietblade.view.render import (
+    FROM_ABOVE,
+    FROM_UPSTREAM,
+    Stage,
+    View,
+    cropped,
+    curved_surface,
+    moved,
+    sharp_edges,
+)
+from quietblade.view.style import DIVERGING, SEQUENTIAL, WIDTH, new_figure, styled
+
+_BLADE, _FILM, _EXCITED, _LINES = "#C9D3DC", "#E69F00", "#D55E00", "#30363C"
+_CELL_COLORS = {"tetra10": _BLADE, "pyramid13": "#56B4E9", "hexahedron20": _FILM}
+_MODE_AMPLITUDE = 0.12  # largest displacement in a picture of a mode, over the span
+_COLUMNS = 3  # of the small pictures
+_STRETCH, _SLAB = 3.0, 0.02  # of the cut: thickness, and half its length along the span [m]
+_FROM_CUT = View((-0.3, 0.5, 1.0), (0.0, 1.0, 0.0))
+
+
+@styled
+def draw_mesh(folder: RunFolder) -> Figure:
+    """Planform with the film inside, surface mesh, and a cut through the film's layers."""
+    grid = read_fields(folder.static_fields)
+    planform, surface = cropped([_planform(grid), _surface_mesh(grid)])
+    (cut,) = cropped([_cut(grid)])
+    heights = [WIDTH * image.shape[0] / image.shape[1] for image in (planform, surface, cut)]
+    figure = new_figure(sum(heights) + 0.9)
+    panels = figure.subplots(3, 1, height_ratios=heights)
+    _show(panels[0], planform, _planform_title(grid))
+    _show(panels[1], surface, "Surface mesh")
+    _show(panels[2], cut, _cut_title(grid))
+    return figure
+
+
+@styled
+def draw_deformed(folder: RunFolder, result: Result, largest: float | None = None) -> Figure:
+    """Deformed blade with the film's shear strain, and the rigid blade.
+
+    Parameters
+    ----------
+    folder, result
+        The run.
+    largest : float, optional
+        Shear strain at the end of the colour scale, to compare blades; by default the run's own.
+    """
+    rigid = _solid(read_fields(folder.static_fields))
+    deformed = moved(rigid, field_values(rigid, "displacement"))
+    film = region(deformed, "film")
+    stage = Stage((2400, 1500))
+    stage.add(curved_surface(rigid), color=_BLADE, opacity=0.15)
+    stage.add(sharp_edges(rigid), color=_LINES, line_width=1.5)
+    stage.add(curved_surface(deformed), color="#5B7083", opacity=0.25)
+    stage.add(sharp_edges(deformed), color=_LINES, line_width=2.5)
+    if film.n_cells:
+        strain = 100.0 * field_values(film, "film_shear_strain")
+        limits = (0.0, float(np.nanmax(strain)) if largest is None else 100.0 * largest)
+        film.point_data["percent"] = strain
+        stage.add(curved_surface(film), scalars="percent", cmap=SEQUENTIAL, clim=limits)
+    (image,) = cropped([stage.picture(FROM_UPSTREAM)])
+    figure = new_figure(1.15 + WIDTH * image.shape[0] / image.shape[1])
+    axes = figure.subplots()
+    tip = ", ".join(f"{1e3 * u:z.1f}" for u in result.static.tip_displacement)
+    _show(axes, image, f"{result.title}: rigid and deformed\nTip displacement ({tip}) mm, to scale")
+    if film.n_cells:
+        bar = _color_bar(figure, axes, limits, SEQUENTIAL, location="bottom", shrink=0.6, aspect=40)
+        bar.set_label("Shear strain of the film, engineering $\\gamma$ [%]")
+    return figure
+
+
+@styled
+def draw_mode_shapes(
+    result: Result, configuration: str, pictures: Mapping[str, AnyArray]
+) -> Figure:
+    """All wet modes as small pictures of one scale, coloured by the motion that makes sound.
+
+    Parameters
+    ----------
+    result : Result
+        The run.
+    configuration : str
+        ``C0`` or ``C1``.
+    pictures : mapping
+        What `mode_pictures` makes of that configuration.
+    """
+    modes = result.configurations[configuration].modes
+    rows = max(1, -(-len(modes.name) // _COLUMNS))
+    shape = next((p.shape for p in pictures.values()), (1, 2))
+    figure = new_figure(0.5 + rows * (0.2 + 0.9 * WIDTH / _COLUMNS * shape[0] / shape[1]))
+    panels = figure.subplots(rows, _COLUMNS, squeeze=False).ravel()
+    for panel in panels:
+        panel.set_axis_off()
+    numbers = zip(modes.name, modes.frequency, modes.loss_factor, strict=True)
+    for panel, (name, frequency, loss) in zip(panels, numbers, strict=False):
+        _show(panel, pictures[name], f"{name}  {frequency:.1f} Hz, $\\eta$ = {loss:.1e}")
+    bar = _color_bar(figure, list(panels), (-1.0, 1.0), DIVERGING, shrink=0.8, aspect=30)
+    bar.set_label("Displacement normal to the surface\nover the largest displacement [–]")
+    title = f"Wet modes in {configuration}: {result.title}"
+    figure.suptitle(title, x=0.01, ha="left", fontsize=9.0)
+    return figure
+
+
+def mode_pictures(folder: RunFolder, configuration: str) -> dict[str, AnyArray]:
+    """Pictures of all mode shapes of a configuration by name, of one size and scale."""
+    grid = read_fields(folder.mode_fields(configuration))
+    names = field_labels(grid, "mode_shape")
+    pictures = cropped([_mode_picture(grid, name) for name in names]) if names else []
+    return dict(zip(names, pictures, strict=True))
+
+
+def _mode_picture(grid: pv.UnstructuredGrid, name: str) -> AnyArray:
+    shape = np.real(field_values(grid, "mode_shape", name))
+    solid = pv.UnstructuredGrid(grid)
+    solid.point_data["shape"] = shape / np.max(np.linalg.norm(shape, axis=1))
+    surface = curved_surface(solid)
+    motion, normal = surface.point_data["shape"], surface.point_data["Normals"]
+    # of either side the normal that points to the suction side, so that both show one colour
+    upwards = normal * np.sign(normal[:, 1:2])
+    surface.point_data["across"] = np.sum(motion * upwards, axis=1)
+    amplitude = _MODE_AMPLITUDE * float(np.ptp(grid.points[:, 2]))
+    surface.points = surface.points + amplitude * motion
+    stage = Stage((900, 600))
+    stage.add(sharp_edges(grid), color="#9AA0A6", line_width=1.5)
+    stage.add(surface, scalars="across", cmap=DIVERGING, clim=(-1.0, 1.0))
+    box = np.array(grid.bounds) + amplitude * np.array([-1, 1, -1, 1, -1, 1])
+    return stage.picture(FROM_UPSTREAM, box.tolist())
+
+
+def _planform(grid: pv.UnstructuredGrid) -> AnyArray:
+    stage = Stage((2400, 700))
+    film = region(grid, "film")
+    if film.n_cells:
+        stage.add(curved_surface(film), color=_FILM)
+        stage.add_lines(outer_edges(film), FROM_ABOVE, color=_LINES, line_width=1.5)
+    stage.add(curved_surface(_solid(grid)), color=_BLADE, opacity=0.35)
+    stage.add(sharp_edges(_solid(grid)), color=_LINES, line_width=2.5)
+    excited = region(grid, "excited")
+    if excited.n_cells:
+        stage.add(excited.extract_surface(algorithm="dataset_surface"), color=_EXCITED)
+    return stage.picture(FROM_ABOVE)
+
+
+def _surface_mesh(grid: pv.UnstructuredGrid) -> AnyArray:
+    stage = Stage((2400, 700))
+    solid = _solid(grid)
+    stage.add(curved_surface(solid), color=_BLADE)
+    stage.add_lines(outer_edges(solid), FROM_ABOVE, color=_LINES, line_width=2.0)
+    return stage.picture(FROM_ABOVE)
+
+
+def _cut(grid: pv.UnstructuredGrid) -> AnyArray:
+    """Cells of a slice at mid-span, so that the layers are seen from its end."""
+    heights = grid.cell_centers().points[:, 2]
+    middle = float(np.mean(grid.bounds[4:]))
+    slab = grid.extract_cells(np.flatnonzero(np.abs(heights - middle) < _SLAB))
+    slab.points = slab.points * [1.0, _STRETCH, 1.0]
+    stage = Stage((2400, 900))
+    for kind, color in _CELL_COLORS.items():
+        part = slab.extract_cells(np.flatnonzero(slab.celltypes == CELL_TYPES[kind]))
+        if part.n_cells:
+            stage.add(curved_surface(part), color=color)
+            stage.add_lines(outer_edges(part), _FROM_CUT, color=_LINES, line_width=2.5)
+    return stage.picture(_FROM_CUT)
+
+
+def _cut_title(grid: pv.UnstructuredGrid) -> str:
+    film = "; hexahedra of the film orange, pyramids blue" if region(grid, "film").n_cells else ""
+    return f"Cells at mid-span, thickness drawn {_STRETCH:g} times{film}"
+
+
+def _planform_title(grid: pv.UnstructuredGrid) -> str:
+    excited = "; excited patch red" if region(grid, "excited").n_cells else ""
+    return f"From the suction side: root left, leading edge below{excited}"
+
+
+def _solid(grid: pv.UnstructuredGrid) -> pv.UnstructuredGrid:
+    """Blade and film as one body: the surface of the blade alone has the film's bed."""
+    return grid.extract_cells(np.flatnonzero(grid.celltypes != CELL_TYPES["triangle6"]))
+
+
+def _color_bar(
+    figure: Figure,
+    axes: Axes | list[Axes],
+    limits: tuple[float, float],
+    colors: str,
+    **options: Any,
+) -> Colorbar:
+    return figure.colorbar(ScalarMappable(Normalize(*limits), colors), ax=axes, **options)
+
+
+def _show(axes: Axes, image: AnyArray, title: str) -> None:
+    axes.imshow(image, interpolation="antialiased")
+    axes.set_anchor("W")
+    axes.set_axis_off()
+    axes.set_title(title)

@@ -1,0 +1,170 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Headline figures, their schema, their tables, and the differences of two runs."""
+
+import json
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from pydantic import ValidationError
+
+from quietblade.results.comparison import compare_summaries, comparison_table
+from quietblade.results.documentation import json_schema, schema_page
+from quietblade.results.headline import summarise
+from quietblade.results.summary import Summary
+from quietblade.results.tables import as_text, summary_tables
+from tests.results.synthetic import make_result, with_static
+
+PAGE = Path(__file__).parents[2] / "docs" / "result-schema.md"
+
+
+def as_json(summary: Summary) -> Any:
+    return json.loads(json.dumps(summary.model_dump(mode="json"), allow_nan=False))
+
+
+def problems(
+    data: Any, node: Mapping[str, Any], schema: Mapping[str, Any], at: str = ""
+) -> list[str]:
+    """Places where data do not fit a JSON schema (the keywords that ours uses)."""
+    if "$ref" in node:
+        return problems(data, schema["$defs"][node["$ref"].rsplit("/", 1)[1]], schema, at)
+    if "anyOf" in node:
+        found = [problems(data, option, schema, at) for option in node["anyOf"]]
+        return [] if any(not f for f in found) else [f"{at}: fits no option"]
+    kinds = {"object": dict, "array": list, "string": str, "boolean": bool, "null": type(None)}
+    kind, number = node["type"], isinstance(data, (int, float)) and not isinstance(data, bool)
+    if kind in {"number", "integer"}:
+        return [] if number and (kind == "number" or isinstance(data, int)) else [f"{at}: {kind}"]
+    if not isinstance(data, kinds[kind]):
+        return [f"{at}: not {kind}"]
+    found = []
+    if kind == "object":
+        known, rest = node.get("properties", {}), node.get("additionalProperties", True)
+        found += [f"{at}.{key}: missing" for key in node.get("required", ()) if key not in data]
+        for key, value in data.items():
+            inner = known.get(key, rest)
+            if isinstance(inner, bool):
+                found += [] if inner else [f"{at}.{key}: unknown"]
+            else:
+                found += problems(value, inner, schema, f"{at}.{key}")
+    if kind == "array":
+        items = node.get("prefixItems") or [node["items"]] * len(data)
+        if len(items) != len(data):
+            return [f"{at}: length"]
+        for k, (value, inner) in enumerate(zip(data, items, strict=True)):
+            found += problems(value, inner, schema, f"{at}[{k}]")
+    return found
+
+
+@pytest.mark.parametrize("blade", ["aluminium", "composite"])
+def test_the_output_fits_the_schema(blade: str) -> None:
+    schema = json_schema()
+    data = as_json(summarise(make_result(blade)))
+    assert problems(data, schema, schema) == []
+    assert Summary.model_validate(data) == summarise(make_result(blade))
+
+
+@pytest.mark.parametrize(
+    ("part", "key", "value"),
+    [("static", "lift_n", "much"), ("static", "converged", None), ("mesh", "nodes", 1.5),
+     ("modes", "C0", [{"name": "B1"}]), ("sound_power", "surprise", 1.0)],
+)  # fmt: skip
+def test_the_schema_refuses(part: str, key: str, value: Any) -> None:
+    schema = json_schema()
+    data = as_json(summarise(make_result()))
+    data[part][key] = value
+    assert problems(data, schema, schema)
+    with pytest.raises(ValidationError):
+        Summary.model_validate(data)
+
+
+def test_the_promised_fields_hold_the_result() -> None:
+    result = make_result("composite")
+    data = as_json(summarise(result))
+    static, c0 = result.static, result.configurations["C0"]
+    assert data["static"]["tip_displacement_m"] == static.tip_displacement.tolist()
+    assert data["static"]["max_film_shear_strain"] == static.max_film_shear_strain
+    assert data["static"]["lift_n"] == static.lift[2]
+    assert data["static"]["iterations"] == 8
+    first = data["modes"]["C0"][0]
+    assert (first["name"], first["frequency_hz"]) == ("B5", 96.1)
+    assert first["loss_factor"] == c0.modes.loss_factor[0]
+    assert data["sound_power"]["frequency_hz"] == c0.spectrum.frequency.tolist()
+    assert data["sound_power"]["C0_db"] == c0.spectrum.power_level[0].tolist()
+    assert len(data["sound_power"]["C1_db"]) == len(data["sound_power"]["frequency_hz"])
+    worst = max(c.spectrum.balance_residual.max() for c in result.configurations.values())
+    assert data["balance"]["max_relative_residual"] == worst
+    assert data["timings_s"] == {"mesh": 4.0, "equilibrium": 20.5, "sweep": 60.0, "total": 84.5}
+    assert data["mesh"]["nodes"] == 17036
+    assert data["unknowns"] == 28410 + 388 + 12034
+
+
+def test_what_was_not_computed_is_null() -> None:
+    result = with_static(make_result(), max_film_shear_strain=np.nan)
+    c0 = result.configurations["C0"]
+    power = c0.spectrum.power.copy()
+    power[:, 3] = np.nan
+    holed = replace(c0, spectrum=replace(c0.spectrum, power=power))
+    data = as_json(summarise(replace(result, configurations={"C0": holed})))
+    assert data["static"]["max_film_shear_strain"] is None
+    assert data["sound_power"]["C0_db"][3] is None
+    assert data["sound_power"]["C1_db"] == []
+    assert data["modes"]["C1"] == []
+    empty = as_json(summarise(replace(result, configurations={})))
+    assert empty["balance"]["max_relative_residual"] is None
+    schema = json_schema()
+    assert problems(empty, schema, schema) == []
+
+
+def test_the_documentation_is_that_of_the_code() -> None:
+    assert PAGE.read_text(encoding="utf-8") == schema_page(), (
+        "docs/result-schema.md is out of date; quietblade.results.documentation says how to "
+        "renew it"
+    )
+
+
+def test_the_text_says_what_people_ask() -> None:
+    summary = summarise(make_result("composite"))
+    text = as_text(summary.title, summary_tables(summary))
+    for part in ("1.4, 360.0, -77.8 mm", "BGT-1, R = 1.3 m, kR = 0.54 to 1.09", "dB re 1 pW",
+                 "+7.94 %", "19 of 19 claims agree", "incidence beyond stall"):  # fmt: skip
+        assert part in text, part
+    assert all(len(set(map(len, t.rows))) == 1 for t in summary_tables(summary))
+
+
+def test_a_result_that_did_not_converge_says_so() -> None:
+    summary = summarise(with_static(make_result(), converged=False))
+    assert "NOT CONVERGED" in as_text("", summary_tables(summary))
+
+
+def test_repeated_changes_of_solver_are_counted() -> None:
+    summary = summarise(make_result())
+    events = tuple(f"sweep: a -> b: residual {k}e-5" for k in range(4))
+    changed = summary.model_copy(
+        update={"run": summary.run.model_copy(update={"fallbacks": events})}
+    )
+    text = as_text("", summary_tables(changed))
+    assert text.count("sweep: a -> b") == 1
+    assert "first of 4 times" in text
+
+
+def test_differences() -> None:
+    a, b = (summarise(make_result(blade)) for blade in ("aluminium", "composite"))
+    found = {d.name: d for d in compare_summaries(a, b)}
+    tip = found["tip displacement y"]
+    assert (tip.first, tip.second) == (0.13, 0.36)
+    assert tip.change == pytest.approx(0.23)
+    assert tip.relative == pytest.approx(0.23 / 0.13)
+    assert found["C0 T2 frequency"].change == pytest.approx(4.2)
+    assert found["C0 B7 frequency"].first is None
+    assert found["C0 B7 frequency"].change is None
+    level = found["C1 T2 peak level"]
+    assert level.unit == "dB re 1 pW"
+    assert level.relative is None
+    assert all(d.change == 0.0 for d in compare_summaries(a, a) if d.change is not None)
+    table = comparison_table(tuple(found.values()), ("first", "second"))
+    row = next(row for row in table.rows if row[0] == "C0 T2 frequency")
+    assert row == ("C0 T2 frequency", "162.7", "166.9", "+4.2", "+2.58", "Hz")

@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""One coarse study from case to files; laws that hold on any mesh."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from quietblade.case import Case
+from quietblade.case.presets import preset_text
+from quietblade.results.headline import summarise
+from quietblade.results.model import Result, path
+from quietblade.results.store import RunFolder
+from quietblade.results.vtk import field_labels, read_fields
+from quietblade.study.run import finished, paper_blade, run_case
+
+COARSE = {
+    "film.span": [0.1, 0.9],
+    "film.chord": [0.25, 0.65],
+    "film.thickness": "1 mm",
+    "mesh.size": "45 mm",
+    "acoustics.sphere_radius": "1.3 m",
+    "acoustics.band": ["80 Hz", "180 Hz"],
+    "acoustics.step": "50 Hz",
+    "acoustics.points_per_mode": 3,
+    "flow.sections": 41,
+    "flow.section_nodes": 121,
+}
+
+
+@pytest.fixture(scope="module")
+def case() -> Case:
+    return Case.parse(preset_text("paper-composite")).varied(COARSE)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> RunFolder:
+    return RunFolder(tmp_path_factory.mktemp("run") / "blade")
+
+
+@pytest.fixture(scope="module")
+def result(case: Case, folder: RunFolder) -> Result:
+    return run_case(case, folder)
+
+
+def test_injected_power_is_radiated_or_dissipated(result: Result) -> None:
+    for configuration in result.configurations.values():
+        assert np.all(configuration.spectrum.balance_residual < 1e-6)
+        assert np.all(configuration.spectrum.dissipated > 0.0)
+
+
+def test_power_of_sphere_and_wetted_surface_agree(result: Result) -> None:
+    for configuration in result.configurations.values():
+        sphere, wetted, outgoing = configuration.spectrum.power
+        assert np.allclose(sphere, wetted, rtol=1e-4)  # both need the small part of a large field
+        assert np.all(outgoing > 0.0)
+
+
+def test_outgoing_power_is_below_the_spheres_where_kr_is_small(result: Result) -> None:
+    # first-order BGT exaggerates dipoles at small kR (a factor 3.5 at kR = 0.84)
+    spectrum = result.configurations["C0"].spectrum
+    low = result.configurations["C0"].kr < 0.6
+    assert low.any()
+    excess = spectrum.power[path("sphere")] / spectrum.power[path("multipoles")]
+    assert np.all(excess[low] > 2.0)
+
+
+def test_peaks_of_the_sweep_stand_on_the_modes(result: Result) -> None:
+    for configuration in result.configurations.values():
+        spectrum, modes = configuration.spectrum, configuration.modes
+        level = spectrum.power_level[path("sphere")]
+        inside = (modes.frequency > 85.0) & (modes.frequency < 175.0)
+        assert inside.any()
+        best = modes.participation[inside] > 0.1
+        for f in modes.frequency[inside][best]:
+            near = np.abs(spectrum.frequency - f) < 0.02 * f
+            assert level[near].max() > np.median(level)
+
+
+def test_static_load_moves_the_modes_and_keeps_their_shapes(result: Result) -> None:
+    rest, loaded = (result.configurations[name].modes for name in ("C0", "C1"))
+    bending = [k for k, name in enumerate(rest.name) if name in ("B1", "B2", "B3")]
+    assert np.all(rest.partner_mac[bending] > 0.8)
+    shift = [
+        loaded.frequency[loaded.name.index(rest.partner[k])] / rest.frequency[k] for k in bending
+    ]
+    assert np.all(np.abs(np.array(shift) - 1.0) > 1e-3)
+
+
+def test_lift_grows_with_the_camber_of_the_composite_blade(result: Result) -> None:
+    rigid, chained, coupled = result.static.lift
+    assert result.static.converged
+    assert chained > rigid
+    assert coupled > rigid
+    assert result.static.max_film_shear_strain > 5.0 * 0.002
+
+
+def test_headline_has_what_scripts_read(result: Result) -> None:
+    figures = summarise(result).model_dump(mode="json")
+    assert len(figures["static"]["tip_displacement_m"]) == 3
+    assert figures["static"]["iterations"] == len(result.static.history.lift)
+    assert {"name", "frequency_hz", "loss_factor"} <= set(figures["modes"]["C0"][0])
+    frequencies = figures["sound_power"]["frequency_hz"]
+    assert len(frequencies) == len(figures["sound_power"]["C1_db"])
+    assert figures["balance"]["max_relative_residual"] < 1e-6
+    assert figures["mesh"]["nodes"] == result.mesh.nodes
+    assert figures["unknowns"] == result.mesh.unknowns.count.sum()
+
+
+def test_files_can_be_read_again(result: Result, folder: RunFolder) -> None:
+    static = read_fields(folder.static_fields)
+    assert np.nanmax(static.point_data["displacement"][:, 1]) > 0.05
+    for name, configuration in result.configurations.items():
+        labels = field_labels(read_fields(folder.mode_fields(name)), "mode_shape")
+        assert labels == configuration.modes.name
+
+
+def test_finished_run_is_found_and_another_case_is_not(
+    result: Result, case: Case, folder: RunFolder
+) -> None:
+    found = finished(case, folder)
+    assert found is not None
+    assert np.array_equal(found.static.lift, result.static.lift)
+    assert finished(case.varied({"flow.speed": "4 m/s"}), folder) is None
+    assert finished(case, RunFolder(Path("no-such-run"))) is None
+
+
+def test_papers_blades_are_recognised(case: Case) -> None:
+    assert paper_blade(case) == "composite"  # film, mesh and sphere are not stated in the paper
+    assert paper_blade(Case.parse(preset_text("paper-aluminium"))) == "aluminium"
+    assert paper_blade(case.varied({"flow.speed": "4 m/s"})) == ""

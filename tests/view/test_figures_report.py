@@ -1,0 +1,148 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""All figures of a run, the report, and the commands that make them."""
+
+import json
+import re
+import shutil
+from base64 import b64decode
+from html.parser import HTMLParser
+from pathlib import Path
+
+import numpy as np
+import pytest
+from matplotlib.image import imread
+
+from quietblade.cli.main import execute
+from quietblade.results.headline import summarise
+from quietblade.results.store import RunFolder
+from quietblade.view.figures import draw_joint_figures
+from quietblade.view.report import render_report
+
+NAMES = {
+    "mesh", "deformed", "mid-section-normalised", "mid-section", "blade-angle",
+    "lift-coefficient", "convergence", "mode-shapes-C0", "mode-shapes-C1", "sound-power",
+    "power-paths",
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def drawn(runs: tuple[RunFolder, ...]) -> tuple[Path, ...]:
+    """Pictures that the command makes."""
+    assert execute(["plot", str(runs[1].root), "--quiet"]) == 0
+    return tuple(runs[1].figures.iterdir())
+
+
+def assert_picture(file: Path) -> None:
+    pixels = imread(file)[..., :3]
+    assert pixels.shape[1] >= 1200  # 6.3 inches at 200 dpi
+    assert 0.01 < np.mean(np.any(pixels < 0.9, axis=2)) < 0.9, file
+
+
+def test_every_figure_is_drawn(drawn: tuple[Path, ...]) -> None:
+    assert {file.name for file in drawn} == {f"{name}.png" for name in NAMES}
+    for file in drawn:
+        assert_picture(file)
+
+
+def test_figures_of_several_runs(runs: tuple[RunFolder, ...], tmp_path: Path) -> None:
+    told: list[tuple[str, float | None]] = []
+    files = draw_joint_figures(runs, tmp_path, lambda s, f, _m: told.append((s, f)))
+    assert {file.stem for file in files} == {
+        "mid-section-normalised", "mid-section", "blade-angle", "lift-coefficient",
+        "sound-power-at-rest", "deformed-aluminium", "deformed-composite",
+    }  # fmt: skip
+    for file in files:
+        assert_picture(file)
+    fractions = [f for s, f in told if s == "figures" and f is not None]
+    assert fractions == sorted(fractions)
+    assert fractions[-1] == 1.0
+
+
+class _Links(HTMLParser):
+    def __init__(self) -> None:
+        super().__init__()
+        self.tags: list[str] = []
+        self.sources: list[str] = []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append(tag)
+        self.sources += [v for k, v in attrs if k in {"src", "href"} and v]
+
+
+def test_the_report_needs_nothing_else(
+    drawn: tuple[Path, ...], runs: tuple[RunFolder, ...]
+) -> None:
+    page = render_report(runs[1])
+    links = _Links()
+    links.feed(page)
+    assert len(links.sources) == len(drawn)
+    prefix = "data:image/png;base64,"
+    assert all(source.startswith(prefix) for source in links.sources)
+    pictures = {b64decode(source.removeprefix(prefix)) for source in links.sources}
+    assert pictures == {file.read_bytes() for file in drawn}
+    assert "script" not in links.tags
+    assert "url(" not in page
+    assert "http" not in re.sub(r"<pre>.*?</pre>", "", page, flags=re.DOTALL)
+    for part in ("The paper&#x27;s composite blade", "größe", "1182", "ngsolve"):
+        assert part in page, part
+
+
+def test_the_case_text_cannot_break_the_report(
+    drawn: tuple[Path, ...], runs: tuple[RunFolder, ...], tmp_path: Path
+) -> None:
+    from tests.results.synthetic import make_result  # noqa: PLC0415  # not the shared run
+
+    copy = RunFolder(tmp_path / "copy")
+    shutil.copytree(runs[1].root, copy.root)
+    copy.save(make_result("composite", case_text="# $title <script>alert(1)</script>"))
+    page = render_report(copy)
+    assert "<script>" not in page
+    assert "# $title &lt;script&gt;" in page
+
+
+def test_show(runs: tuple[RunFolder, ...], capsys: pytest.CaptureFixture[str]) -> None:
+    assert execute(["show", str(runs[0].root)]) == 0
+    shown = capsys.readouterr().out
+    for part in ("Tip displacement", "130.0", "C0 [dB]", "agrees"):
+        assert part in shown, part
+    assert execute(["show", str(runs[0].root), "--json"]) == 0
+    data = json.loads(capsys.readouterr().out)
+    assert data == json.loads(summarise(runs[0].load()).model_dump_json())
+
+
+def test_compare(runs: tuple[RunFolder, ...], capsys: pytest.CaptureFixture[str]) -> None:
+    first, second = (str(run.root) for run in runs)
+    assert execute(["compare", first, second, "--json"]) == 0
+    found = {row["name"]: row for row in json.loads(capsys.readouterr().out)}
+    assert found["C0 T2 frequency"]["change"] == pytest.approx(4.2)
+    assert execute(["compare", first, second]) == 0
+    assert "C0 T2 frequency" in capsys.readouterr().out
+
+
+def test_report_is_written(
+    drawn: tuple[Path, ...],
+    runs: tuple[RunFolder, ...],
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    file = tmp_path / "a.html"
+    assert execute(["report", str(runs[1].root), "--out", str(file)]) == 0
+    assert "a.html" in capsys.readouterr().out
+    assert file.read_text(encoding="utf-8") == render_report(runs[1])
+
+
+def test_joint_figures_need_two_runs(
+    runs: tuple[RunFolder, ...], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert execute(["plot", "--joint", str(runs[0].root)]) == 1
+    assert "at least two runs" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("command", ["show", "plot", "report"])
+def test_a_folder_without_a_result(
+    command: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert execute([command, str(tmp_path)]) == 3
+    captured = capsys.readouterr()
+    assert "no result.nc here" in captured.err
+    assert not list(tmp_path.iterdir())
