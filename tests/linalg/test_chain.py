@@ -11,12 +11,18 @@ from quietblade.linalg import make_solver
 from quietblade.linalg.chain import SolverChain
 from quietblade.linalg.pardiso import available
 from quietblade.linalg.protocol import BackendFailed
+from quietblade.linalg.refinement import equilibration
 from quietblade.linalg.report import Level
 from quietblade.linalg.rslab import Rslab
 from quietblade.linalg.superlu import SuperLu
 
-RNG = np.random.default_rng(7)
+RNG = np.random.default_rng()
 PROGRAMS = ["rslab", "superlu", *(["mkl-pardiso"] if available() else [])]
+
+
+@pytest.fixture(autouse=True)
+def _same_numbers_in_any_order():
+    RNG.bit_generator.state = np.random.default_rng(7).bit_generator.state
 
 
 def saddle(n=400, m=60, *, dtype=float, skew=0.0):
@@ -173,6 +179,37 @@ def test_hard_matrix_goes_from_mixed_to_double():
     mixed = [index for index, name in enumerate(tried) if name == "rslab (mixed)"]
     assert mixed == [1, 4]
     assert "rslab (mixed) -> rslab (double)" in str(chain.report())
+
+
+def test_single_precision_works_close_to_a_light_resonance():
+    # plain refinement diverges here: the factor's error exceeds the distance from the pole
+    n = 400
+    K = sp.csr_matrix(sp.diags([-1.0, 2.0, -1.0], [-1, 0, 1], shape=(n, n)) * 1e6)
+    s = 1e6 * (2.0 - 2.0 * np.cos(7 * np.pi / (n + 1)))
+    A = sp.csr_matrix(K * (1.0 + 1e-4j) - s * sp.eye(n))
+    b = RNG.standard_normal(n)
+    factor = make_solver("rslab", threads=1).analyse(A).factor(A)
+    raw = factor._factor.apply
+    x = raw(b[:, None].astype(complex))
+    for _ in range(5):
+        x = x + raw(b[:, None] - A @ x)
+    plain = np.linalg.norm(A @ x - b[:, None]) / np.linalg.norm(b)
+    x = factor.solve(b)
+    assert factor.solver == "rslab (mixed)"
+    assert np.linalg.norm(A @ x - b) < min(1e-6, 0.01 * plain) * np.linalg.norm(b)
+    exact = np.linalg.solve(A.toarray(), b)
+    np.testing.assert_allclose(x, exact, atol=1e-6 * np.abs(exact).max())
+
+
+def test_equilibration_brings_rows_near_one():
+    scales = 10.0 ** RNG.uniform(-6, 6, 80)
+    A = sp.random(80, 80, density=0.1, random_state=RNG) + sp.eye(80)
+    A = sp.csr_matrix(sp.diags(scales) @ (A + A.T) @ sp.diags(scales))
+    d = equilibration(A, sweeps=10)
+    largest = abs(sp.diags(d) @ A @ sp.diags(d)).max(axis=1).toarray()
+    assert largest.min() > 0.5
+    assert largest.max() < 2.0
+    np.testing.assert_array_equal(equilibration(sp.csr_matrix((4, 4)), 3), np.ones(4))
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from scipy.special import sph_harm_y, spherical_jn
 
 from quietblade.typing import ComplexArray, FloatArray
 from quietblade.vibroacoustics.harmonics import radial_factors, solid_harmonics
-from quietblade.vibroacoustics.multipoles import SurfaceSources, _interpolation
+from quietblade.vibroacoustics.multipoles import SurfaceSources
 from quietblade.vibroacoustics.operators import build_operators, product_space
 from quietblade.vibroacoustics.radiation import sphere_mass
 from verification.acoustics_closed_forms import bgt1, h1, h2, moving_sphere, reflection
@@ -62,7 +62,7 @@ def test_gradient_of_a_regular_wave(degree: int) -> None:
 def test_interpolation_matrix_is_that_of_the_nodal_basis() -> None:
     basis = ball().basis
     values = RNG.normal(size=len(basis.points))
-    np.testing.assert_allclose(_interpolation(basis) @ values, basis.to_dofs(values), atol=1e-12)
+    np.testing.assert_allclose(basis.interpolation @ values, basis.to_dofs(values), atol=1e-12)
 
 
 def test_regular_wave_from_outside_gives_nothing() -> None:

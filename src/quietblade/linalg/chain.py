@@ -116,7 +116,7 @@ class ChainAnalysis:
         return ChainFactorization(self, A)
 
     def first_level(self) -> int:
-        """First level that is not resting after a failure; the last one never rests."""
+        """First level that is not resting after a failure."""
         with self._lock:
             for index, level in enumerate(self.chain.levels[:-1]):
                 if self._resting[level] == 0:
@@ -125,7 +125,13 @@ class ChainAnalysis:
         return len(self.chain.levels) - 1
 
     def judge(self, level: Level, *, failed: bool) -> None:
-        """Remember how a level did: with each failure in a row it rests twice as long."""
+        """Remember how a level did: with each failure in a row it rests twice as long.
+
+        That is for single precision. In double precision it is the matrix that fails, and the
+        next one may be better.
+        """
+        if not level.single:
+            return
         with self._lock:
             self._failures[level] = self._failures[level] + 1 if failed else 0
             if failed:

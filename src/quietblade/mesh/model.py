@@ -34,12 +34,12 @@ _NETGEN_FROM_VTK = {
 
 @dataclass(frozen=True)
 class CellBlock:
-    """Cells of one kind: ``tetra10``, ``pyramid13`` or ``hexahedron20``, VTK node order.
+    """Cells of one kind, VTK node order.
 
     Attributes
     ----------
     kind : str
-        Name of the cell.
+        ``tetra10``, ``pyramid13``, ``hexahedron20``, or ``triangle6`` for faces.
     connectivity : (n, nodes) int array
         Node numbers of each cell.
     """

@@ -7,7 +7,7 @@ import numpy as np
 
 from quietblade.case import Case
 from quietblade.materials import ply_axes, section_directions
-from quietblade.mesh import Mesh
+from quietblade.mesh import CellBlock, Mesh
 from quietblade.propulsion.strain import nodal_strain
 from quietblade.results.store import RunFolder
 from quietblade.results.vtk import PointField, write_fields
@@ -29,6 +29,7 @@ def write_static_fields(case: Case, mesh: Mesh, statics: Statics, folder: RunFol
         strain = nodal_strain(statics.structure, statics.state.structure, axes, region="film")
         fields.append(PointField("film_shear_strain", 2.0 * np.hypot(strain[:, 3], strain[:, 4])))
     cells = {name: blocks for name, blocks in mesh.cells.items() if name != "water"}
+    cells["excited"] = (CellBlock("triangle6", mesh.faces["excited"]),)
     write_fields(folder.static_fields, mesh.nodes, cells, fields)
 
 

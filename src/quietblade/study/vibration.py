@@ -10,13 +10,7 @@ from scipy.interpolate import make_interp_spline
 from quietblade.case import Case
 from quietblade.errors import Notice
 from quietblade.geometry import Blade
-from quietblade.linalg import (
-    Precision,
-    SolverChain,
-    SolverReport,
-    default_threads,
-    make_solver,
-)
+from quietblade.linalg import Precision, SolverChain, SolverReport, make_solver
 from quietblade.mesh import Mesh
 from quietblade.mesh.motion import MeshMotion
 from quietblade.mesh.surface import SurfaceQuadrature
@@ -189,14 +183,8 @@ def solve_sound(
 ) -> Sound:
     """Sweep the band with a direct solve at each frequency, and find the powers."""
     operators = vibration.operators
-    workers = default_threads()  # factors side by side use the cores better than one in parts
     response = solve_response(
-        operators,
-        frequency,
-        vibration.load,
-        solver=_solver(case, threads=1),
-        workers=workers,
-        progress=progress,
+        operators, frequency, vibration.load, solver=_solver(case), progress=progress
     )
     assert response.solution is not None  # nothing observed: the solutions are kept
     budget = power_budget(operators, response.omega, response.solution, vibration.load)
@@ -204,14 +192,11 @@ def solve_sound(
     return Sound(response, budget, multipoles)
 
 
-def _solver(
-    case: Case, *, precision: Precision | None = None, threads: int | None = None
-) -> SolverChain:
+def _solver(case: Case, *, precision: Precision | None = None) -> SolverChain:
     return make_solver(
         case.solver.name,
         precision=precision or case.solver.precision,
         tolerance=case.solver.tolerance,
-        threads=threads,
     )
 
 

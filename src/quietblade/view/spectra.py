@@ -104,7 +104,8 @@ def _draw_spectra(curves: Sequence[_Curve], title: str, pictures: Mapping[str, A
     frequency = curves[0].configuration.spectrum.frequency
     for curve, level in zip(curves, levels, strict=True):
         f = curve.configuration.spectrum.frequency
-        axes.plot(f, level, label=curve.label, **curve.stroke.options())
+        # dots: computed frequencies; straight lines between them are not computed
+        axes.plot(f, level, label=curve.label, marker=".", markersize=3.0, **curve.stroke.options())
     axes.set_xlim(frequency[0], frequency[-1])
     _keep_readable(axes, levels)
     tops = _name_peaks(axes, curves)
