@@ -87,7 +87,8 @@ class ProgressDisplay:
         elif not ends and now - self._last_line < _LINE_EVERY:
             return
         self._last_line = now
-        self._console.print(f"{stage}: {message or '...'}{self._left(stage, fraction, now)}")
+        line = f"{stage}: {message or '...'}{self._left(stage, fraction, now)}"
+        self._console.print(line, soft_wrap=True)
 
     def _left(self, stage: str, fraction: float | None, now: float) -> str:
         if fraction is None or not 0.0 < fraction < 1.0:

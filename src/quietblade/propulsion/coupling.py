@@ -139,6 +139,10 @@ def solve_static(
     GeometryError
         A deformed section cannot be solved by the flow.
     """
+
+    def inner(_: str, __: float | None, message: str) -> None:
+        progress(_STAGE, None, message)  # a fraction of a load step says nothing of the whole
+
     displacement = np.zeros_like(structure.basis.points)
     state, failure = structure.rest(), None
     flows = [_flow(transfer, inflow, displacement)]
@@ -149,7 +153,7 @@ def solve_static(
         surface = transfer.pressure(flow.sections, flow.loads, displacement)
         try:
             state = structure.solve(
-                surface.values, state, tolerance=newton_tolerance, progress=progress
+                surface.values, state, tolerance=newton_tolerance, progress=inner
             )
         except EquilibriumError as error:
             if iteration == 1:

@@ -3,6 +3,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from math import isnan
 from typing import Protocol
 
 import numpy as np
@@ -51,10 +52,11 @@ class NewtonStep:
 
     def __str__(self) -> str:
         mark = "*" if self.new_tangent else " "
-        return (
+        line = (
             f"load {self.fraction:7.4f}  iteration {self.iteration:2d}{mark} "
-            f"residual {self.residual:8.2e}  increment {self.increment:8.2e}"
+            f"residual {self.residual:8.2e}"
         )
+        return line if isnan(self.increment) else f"{line}  increment {self.increment:8.2e}"
 
 
 class Problem(Protocol):

@@ -72,6 +72,7 @@ def _static(result: Result) -> StaticSummary:
         tip_blade_angle_deg=float(np.degrees(twist)),
         iterations=static.iterations,
         relative_change=float(static.history.relative_change[-1]),
+        changes=tuple(static.history.relative_change.tolist()),
         converged=static.converged,
     )
 

@@ -50,6 +50,7 @@ class StaticSummary(_Part):
     tip_blade_angle_deg: Number = Field(description="change of the blade angle at the tip [deg]")
     iterations: int = Field(description="passes of the coupling")
     relative_change: Number = _of("static/history/relative_change", "the last one")
+    changes: tuple[Number, ...] = _of("static/history/relative_change", "of each pass")
     converged: bool = _of("static/converged")
 
 

@@ -86,6 +86,7 @@ def _static(summary: Summary) -> Table:
              f"below {number(_times(100, static.film_shear_strain_p99), '.2f')} %"),
             ("  at x, y, z", f"{place} m"),
             ("Coupling", f"{state}, {static.iterations} iterations, last change {change}"),
+            ("  change by pass", ", ".join(number(c, ".1e") for c in static.changes)),
         ),
     )  # fmt: skip
 

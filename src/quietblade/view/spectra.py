@@ -167,13 +167,13 @@ def _name_peaks(axes: Axes, curves: Sequence[_Curve]) -> dict[str, tuple[float, 
 def _keep_readable(
     axes: Axes, levels: Sequence[FloatArray], above: FloatArray | None = None
 ) -> None:
-    """Cut what is more than 60 dB below the highest level; ``above`` only raises the upper end."""
+    """Cut what is more than 80 dB below the highest level; ``above`` only raises the upper end."""
     values = np.concatenate(list(levels))
     values = values[np.isfinite(values)]
     if values.size == 0:
         return
     highest = float(values.max())
-    lowest = max(float(values.min()), highest - 60.0)
+    lowest = max(float(values.min()), highest - 80.0)
     top = highest if above is None else max(highest, float(np.nanmax(above)))
     axes.set_ylim(lowest - 3.0, top + 2.0)
 

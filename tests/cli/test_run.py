@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""``quietblade run`` and its progress display; the computation itself is tested in tests/study."""
+
+import io
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from rich.console import Console
+
+from quietblade.case import Case
+from quietblade.case.presets import preset_text
+from quietblade.cli.main import execute
+from quietblade.cli.progress import ProgressDisplay
+from quietblade.results.store import RunFolder
+from quietblade.study.run import run_key
+from tests.results.synthetic import make_result
+
+
+@pytest.fixture
+def case(tmp_path: Path) -> Path:
+    file = tmp_path / "blade.toml"
+    file.write_text(preset_text("paper-aluminium"), encoding="utf-8")
+    return file
+
+
+def stored(case: Path, folder: Path, *, converged: bool) -> None:
+    """Put a result of this very case into a folder."""
+    result = make_result("aluminium")
+    run = replace(result.run, content_key=run_key(Case.load(case)))
+    static = replace(result.static, converged=converged)
+    RunFolder(folder).save(replace(result, run=run, static=static))
+
+
+def test_result_that_is_there_is_not_computed_again(
+    case: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    stored(case, tmp_path / "run", converged=True)
+    assert execute(["run", str(case), "--out", str(tmp_path / "run")]) == 0
+    said = capsys.readouterr().out
+    assert "--force" in said
+    assert "Lift" in said
+
+
+def test_kept_result_that_did_not_converge_has_its_own_exit_code(
+    case: Path, tmp_path: Path
+) -> None:
+    stored(case, tmp_path / "run", converged=False)
+    assert execute(["run", "--brief", str(case), "--out", str(tmp_path / "run")]) == 2
+
+
+def test_wrong_case_ends_before_anything_is_made(
+    case: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = case.read_text(encoding="utf-8").replace('size = "22 mm"', 'size = "-22 mm"')
+    case.write_text(text, encoding="utf-8")
+    assert execute(["run", str(case), "--out", str(tmp_path / "run")]) == 1
+    assert "mesh.size" in capsys.readouterr().err
+    assert not (tmp_path / "run").exists()
+
+
+def test_plain_progress_tells_stage_and_time_left() -> None:
+    out = io.StringIO()
+    with ProgressDisplay(Console(file=out, width=100)) as progress:
+        progress("sweep C0", 0.0, "")
+        progress("sweep C0", 0.25, "120 Hz")  # too soon after the last line
+        progress("sweep C0", 1.0, "12.0 s")
+    assert out.getvalue().splitlines() == ["sweep C0: ...", "sweep C0: 12.0 s"]
+
+
+def test_quiet_progress_says_nothing() -> None:
+    out = io.StringIO()
+    with ProgressDisplay(Console(file=out), quiet=True) as progress:
+        progress("mesh", 0.0, "")
+        progress("mesh", 1.0, "2 s")
+    assert out.getvalue() == ""
