@@ -148,7 +148,7 @@ class ChainAnalysis:
         start = perf_counter()
         factor = analysis.factor(A, single=level.single)
         end = perf_counter()
-        self.chain._log.factored(level, end - begin)
+        self.chain._log.factored(level, end - begin, factor.memory_bytes)
         return factor, end - start
 
 

@@ -45,6 +45,8 @@ class SolverReport:
         Changes of solver in the order of time.
     seconds : float
         Time spent in analyses and factorisations.
+    largest_factor : int
+        Size of the largest factor [bytes].
     """
 
     factorizations: dict[str, int]
@@ -53,6 +55,7 @@ class SolverReport:
     most_steps: int
     fallbacks: tuple[Fallback, ...]
     seconds: float
+    largest_factor: int
 
     def __str__(self) -> str:
         used = ", ".join(f"{name}: {count}" for name, count in self.factorizations.items())
@@ -72,11 +75,13 @@ class Log:
     most_steps: int = 0
     fallbacks: list[Fallback] = field(default_factory=list)
     seconds: float = 0.0
+    largest_factor: int = 0
     lock: Lock = field(default_factory=Lock)
 
-    def factored(self, level: Level, seconds: float) -> None:
+    def factored(self, level: Level, seconds: float, memory_bytes: int) -> None:
         """Count a factorisation."""
         with self.lock:
+            self.largest_factor = max(self.largest_factor, memory_bytes)
             self.factorizations[str(level)] += 1
             self.seconds += seconds
 
@@ -102,4 +107,5 @@ class Log:
                 self.most_steps,
                 tuple(self.fallbacks),
                 self.seconds,
+                self.largest_factor,
             )

@@ -245,5 +245,5 @@ def _solver_table(reports: Mapping[str, LinearReport]) -> model.SolverReport:
         solver=tuple(", ".join(r.factorizations) for r in reports.values()),
         factorizations=np.array([sum(r.factorizations.values()) for r in reports.values()]),
         worst_residual=np.array([r.worst_residual for r in reports.values()]),
-        peak_memory=np.full(len(reports), np.nan),
+        peak_memory=np.array([float(r.largest_factor) for r in reports.values()]),
     )
