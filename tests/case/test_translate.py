@@ -115,8 +115,8 @@ def test_numbers_of_the_paper() -> None:
     known = preflight(preset("paper-aluminium"))
     # atan(0.58 * 1.2 / 5) is the paper's "8 degrees at the tip"
     assert np.degrees(known.incidence) == pytest.approx([1.329, 7.925], abs=1e-3)
-    assert known.kr == pytest.approx([2 * pi * 100 / 1500 * 1.3, 2 * pi * 200 / 1500 * 1.3])
-    assert known.acoustic_wavelength == pytest.approx(7.5)
+    assert known.kr == pytest.approx([2 * pi * 100 / 1500 * 3, 2 * pi * 220 / 1500 * 3])
+    assert known.acoustic_wavelength == pytest.approx(1500 / 220)
     assert [notice.where for notice in known.notices] == ["acoustics.radiation"]
 
 
@@ -154,5 +154,5 @@ def test_notices(changes: dict[str, Any], where: str, fragment: str) -> None:
 def test_a_large_sphere_has_no_notice() -> None:
     case = preset("paper-aluminium").varied({"acoustics.sphere_radius": "8 m"})
     assert preflight(case).notices == ()
-    assert translate.water_size(case) == 1.25  # a sixth of the shortest wavelength
-    assert translate.water_size(preset("paper-aluminium")) == 0.325  # a quarter of the radius
+    assert translate.water_size(case) == pytest.approx(1500 / 220 / 6)  # of a wavelength
+    assert translate.water_size(preset("paper-aluminium")) == 0.75  # a quarter of the radius

@@ -12,7 +12,10 @@ from rich.text import Text
 
 from quietblade.errors import CaseError, Notice, QuietbladeError
 
-console = Console(highlight=False)
+_UNWATCHED_WIDTH = 140
+"""Width of tables that go into a file or a pipe."""
+
+console = Console(highlight=False, width=None if sys.stdout.isatty() else _UNWATCHED_WIDTH)
 """Results, on standard output."""
 
 error_console = Console(stderr=True, highlight=False)
