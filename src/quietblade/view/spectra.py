@@ -113,7 +113,8 @@ def _draw_spectra(curves: Sequence[_Curve], title: str, pictures: Mapping[str, A
         *axes.get_legend_handles_labels(),
         loc="outside lower center",
         ncols=len(curves),
-        title="; ".join(dict.fromkeys(_radiation_note(c.configuration) for c in curves)),
+        title="; ".join(dict.fromkeys(_radiation_note(c.configuration) for c in curves))
+        + "\ndots: computed frequencies; the lines between them only guide the eye",
         title_fontsize=7.5,
     )
     if shown:
