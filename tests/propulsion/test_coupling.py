@@ -8,12 +8,13 @@ from quietblade.errors import ConvergenceError
 from quietblade.flow.inflow import StripInflow, strip_loads
 from quietblade.geometry import Blade
 from quietblade.materials import IsotropicSVK, MooneyRivlin
-from quietblade.mesh import Mesh
+from quietblade.mesh import Mesh, MeshSpec, build_mesh
 from quietblade.mesh.surface import SurfaceQuadrature
 from quietblade.propulsion.coupling import StaticState, solve_static
 from quietblade.propulsion.loading import Spin
 from quietblade.propulsion.structure import Structure
 from quietblade.propulsion.transfer import LoadTransfer
+from tests.conftest import PATCH, make_twisted_blade
 
 FILM = MooneyRivlin("film", 1400.0, 0.238e6, 0.523e6, 2.2e9, 0.21)
 STATIONS = np.linspace(0.0, 1.0, 41)
@@ -74,3 +75,16 @@ def test_blade_without_equilibrium_is_an_error(coarse_mesh: Mesh, small_film_bla
     structure, transfer = parts(coarse_mesh, small_film_blade, 65e6)  # as soft as rubber
     with pytest.raises(ConvergenceError):
         solve_static(structure, transfer, StripInflow(15.0, 3.0))
+
+
+def test_twisted_swept_cambered_blade_finds_its_equilibrium() -> None:
+    blade = make_twisted_blade()
+    mesh = build_mesh(blade, MeshSpec(0.035, (0.0, 0.0, 0.7), 1.3, PATCH, 0.6))
+    structure, transfer = parts(mesh, blade, 120e9)
+    state = solve_static(structure, transfer, StripInflow(5.0, 0.58))
+    assert state.converged
+    assert state.surface.mismatch < 1e-10
+    # the rigid blade's angle is the one it was given, from nose to trailing edge
+    given = blade.blade_angle(STATIONS)
+    assert np.allclose(state.rigid.sections.blade_angle[1:-1], given[1:-1], atol=0.01)
+    assert state.coupled.total.lift != pytest.approx(state.rigid.total.lift, rel=1e-3)
