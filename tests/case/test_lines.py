@@ -124,7 +124,8 @@ def document(data: dict[str, Any], header: str = "") -> str:
         if isinstance(value, dict) and header.count(".") < 1:
             tables.append(f"\n[{name}] # {key!r}\n{document(value, name)}")
         elif isinstance(value, list) and value and all(isinstance(v, dict) for v in value):
-            tables.extend(f"\n[[{name}]]\n{document(v, name + '.x.y')}" for v in value)
+            deep = f'{name}."x"."y"'  # far enough down for everything in it to be inline
+            tables.extend(f"\n[[{name}]]\n{document(v, deep)}" for v in value)
         else:
             rows.append(f"{written(key)}={inline(value)}\n")
     return "".join(rows + tables)

@@ -12,7 +12,6 @@ from quietblade.typing import AnyArray, FloatArray
 _ROUNDING = 8.0 * float(np.finfo(float).eps)
 _LOOSEST = 1e-4  # relative residual above which a solution is wrong, however large it is
 _COLUMNS = 32  # right-hand sides refined together; bounds the memory
-_POLISH = 2  # steps with residuals in extended precision
 _PATIENCE = 6  # steps in a row that may fail to make the residual smaller
 
 
@@ -181,15 +180,13 @@ def _polished(
     """Refine with residuals in extended precision, where rounding ends what double can do.
 
     Close to a light resonance the solution is large and its own rounding hides the residual, but
-    the solution still carries the resonance's amplification of that rounding. Two steps with
-    exact residuals remove it (J. Demmel et al., ACM Trans. Math. Softw. 32 (2006) 325-351). Where
-    extended precision is not wider than double they change nothing.
+    the solution still carries the resonance's amplification of that rounding. A step with an
+    exact residual removes it (J. Demmel et al., ACM Trans. Math. Softw. 32 (2006) 325-351). Where
+    extended precision is not wider than double it changes nothing.
     """
     wide = np.result_type(x.dtype, np.longdouble)
-    exact, solution = A.astype(wide), x.astype(wide)
-    for _ in range(_POLISH):
-        solution += apply(np.asarray(b - exact @ solution, dtype=x.dtype))
-    return np.asarray(solution, dtype=x.dtype)
+    residual = b - A.astype(wide) @ x.astype(wide)
+    return np.asarray(x + apply(np.asarray(residual, dtype=x.dtype)))
 
 
 def _products(left: AnyArray, right: AnyArray) -> AnyArray:
