@@ -192,37 +192,95 @@ def planform() -> Figure:
 
 
 def ply() -> Figure:
-    """Ply angle seen on the upper side, thickness direction towards the reader."""
-    figure, axes = canvas(4.6, 3.4)
-    beta = np.radians(35.0)
-    axes.add_patch(Rectangle((-1.2, -0.65), 2.9, 1.5, facecolor=BLADE, edgecolor="none"))
-    for shift in np.arange(-1.5, 2.0, 0.16):
-        line = axes.plot(
-            [shift - 2 * np.cos(beta), shift + 2 * np.cos(beta)],
-            [-2 * np.sin(beta), 2 * np.sin(beta)],
-            color=FILM,
-            lw=0.5,
-            alpha=0.6,
-        )
-        line[0].set_clip_path(Rectangle((-1.2, -0.65), 2.9, 1.5, transform=axes.transData))
-    arrow(axes, (0, 0), (1.35, 0))
-    label(axes, (1.36, -0.13), "span, z")
-    arrow(axes, (0, 0), (0, 0.72))
-    label(axes, (-0.1, 0.7), r"$\mathbf{t}$")
-    one = (1.0 * np.cos(beta), 1.0 * np.sin(beta))
-    two = (-0.75 * np.sin(beta), 0.75 * np.cos(beta))
-    arrow(axes, (0, 0), one, FORCE, 2.0)
-    arrow(axes, (0, 0), two, FORCE, 2.0)
-    label(axes, (one[0] + 0.09, one[1] + 0.06), "1", FORCE)
-    label(axes, (two[0] - 0.07, two[1] + 0.04), "2", FORCE)
-    turn(axes, (0, 0), 0.55, 0, 35, INK)
-    label(axes, (0.63, 0.18), r"$\beta$")
-    axes.add_patch(Circle((0, 0), 0.06, facecolor="white", edgecolor=FORCE, lw=1.2))
-    axes.add_patch(Circle((0, 0), 0.015, facecolor=FORCE))
-    label(axes, (-0.02, -0.16), r"$3 = \mathbf{n}_s$", FORCE)
-    axes.set_xlim(-1.3, 1.8)
-    axes.set_ylim(-0.75, 0.95)
+    """Ply angle: seen on the upper side (planform), and in a section seen from the tip."""
+    figure, axes = canvas(9.4, 3.6)
+    _ply_planform(axes)
+    _ply_section(axes)
+    axes.set_xlim(-1.75, 5.2)
+    axes.set_ylim(-1.35, 1.45)
     return figure
+
+
+def _ply_planform(axes: Axes) -> None:
+    """Swept blade seen on its upper side, thickness direction towards the reader."""
+    beta, sweep = np.radians(30.0), np.radians(14.0)
+    e = np.array([np.cos(sweep), np.sin(sweep)])  # tangent of the reference line
+
+    def place(s: float, xi: float) -> Point:
+        chord = 1.5 - 0.5 * s
+        return -1.5 + 3.0 * s, 0.75 * s + chord * (xi - 0.5) - 0.375
+
+    outline = [place(0, 0), place(1, 0), place(1, 1), place(0, 1)]
+    blade = Polygon(outline, facecolor=BLADE, edgecolor=INK, lw=1.2)
+    axes.add_patch(blade)
+    fibre = np.array([np.cos(sweep + beta), np.sin(sweep + beta)])
+    across = np.array([-fibre[1], fibre[0]])
+    for shift in np.arange(-2.0, 2.0, 0.13):
+        line = axes.plot(
+            *zip(shift * across - 3 * fibre, shift * across + 3 * fibre, strict=True),
+            color=FILM, lw=0.5, alpha=0.6,
+        )  # fmt: skip
+        line[0].set_clip_path(blade)
+    axes.plot(*zip(place(-0.08, 0.5), place(1.1, 0.5), strict=True), color=INK, lw=0.8,
+              ls=(0, (8, 3, 2, 3)))  # fmt: skip
+    start = np.array(place(0.3, 0.5))
+    arrow(axes, tuple(start), tuple(start + 1.25 * e), INK, 1.8)
+    label(axes, tuple(start + np.array([1.3, 0.16])), r"$\beta = 0$")
+    t = np.array([-e[1], e[0]])
+    arrow(axes, tuple(start), tuple(start + 0.6 * t))
+    label(axes, tuple(start + 1.02 * t + np.array([-0.12, 0.0])), "chordwise")
+    arrow(axes, tuple(start), tuple(start + 1.0 * fibre), FORCE, 2.0)
+    label(axes, tuple(start + 1.1 * fibre), "1", FORCE)
+    arrow(axes, tuple(start), tuple(start + 0.5 * across), FORCE, 2.0)
+    label(axes, tuple(start + 0.6 * across), "2", FORCE)
+    turn(axes, tuple(start), 0.62, 14.0, 44.0, FORCE)
+    label(axes, tuple(start + 0.72 * np.array([np.cos(0.5), np.sin(0.5)])), r"$\beta$", FORCE)
+    axes.add_patch(Circle(tuple(start), 0.06, facecolor="white", edgecolor=FORCE, lw=1.2))
+    axes.add_patch(Circle(tuple(start), 0.016, facecolor=FORCE))
+    label(axes, tuple(start + np.array([0.03, -0.17])), "3", FORCE)
+    label(axes, (0.1, -0.86), "leading edge")
+    label(axes, (0.45, 0.86), "trailing edge")
+    label(axes, (-1.7, -0.75), "root")
+    label(axes, (1.66, 0.1), "tip")
+    label(axes, (0.0, -1.22), "planform, seen on the upper side")
+
+
+def _ply_section(axes: Axes) -> None:
+    """Cambered section seen from the tip: normal of the camber surface, and both drapes."""
+    family = section_family("naca-4")
+    origin, scale = np.array([2.15, -0.25]), 2.9
+    contour = family.contour(0.16, 0.08, 0.02, 121)
+    axes.add_patch(
+        Polygon(origin + scale * contour, facecolor=BLADE, edgecolor=INK, lw=1.2, zorder=1)
+    )
+    xi = np.linspace(0.0, 1.0, 81)
+    height, _ = family.camber_line(xi, 0.08)
+    half = family.half_thickness(xi, 0.16, 0.02)
+    for share in (1 / 3, 2 / 3):
+        for side in (1, -1):
+            layer = np.stack([xi, height + side * share * half], axis=-1)
+            axes.plot(*(origin + scale * layer).T, color=FILM, lw=0.8, alpha=0.8)
+    middle = np.stack([xi, height], axis=-1)
+    axes.plot(*(origin + scale * middle).T, color=INK, lw=1.0, ls=(0, (6, 3)))
+    at, slope = (float(v) for v in family.camber_line(0.75, 0.08))
+    foot = origin + scale * np.array([0.75, at])
+    tangent = np.array([1.0, slope]) / np.hypot(1.0, slope)
+    normal = np.array([-tangent[1], tangent[0]])
+    arrow(axes, tuple(foot), tuple(foot + 0.75 * normal), FORCE, 2.0)
+    label(axes, tuple(foot + 0.86 * normal), "3 = surface normal", FORCE)
+    arrow(axes, tuple(foot), tuple(foot + 0.6 * tangent), INK, 1.8)
+    label(axes, tuple(foot + 0.72 * tangent + np.array([0.12, -0.2])), "chordwise")
+    axes.add_patch(Circle(tuple(foot), 0.06, facecolor="white", edgecolor=INK, lw=1.2, zorder=4))
+    axes.add_patch(Circle(tuple(foot), 0.016, facecolor=INK, zorder=5))
+    for end, text, place in (
+        (origin + scale * np.array([0.4, 0.147]), "first ply (symmetric)", (2.9, 0.75)),
+        (origin + scale * np.array([0.3, 0.077]), "last ply, camber surface", (2.75, -0.75)),
+        (origin + scale * np.array([0.62, 0.004]), "first ply (symmetric and through)",
+         (4.0, -0.55)),
+    ):  # fmt: skip
+        axes.annotate(text, tuple(end), place, fontsize=9, ha="center",
+                      arrowprops={"arrowstyle": "-", "lw": 0.7})  # fmt: skip
+    label(axes, (3.6, -1.22), r"section, seen from the tip; $\beta = 0$ towards the reader")
 
 
 def domain() -> Figure:

@@ -7,8 +7,10 @@ Needs the programs ``xfoil`` and ``gcc``. Debian's XFOIL traps floating-point ex
 its first solution; a small library that is loaded before it takes the traps out.
 
 Files made: ``<section>-<edge>.csv`` with the nodes and XFOIL's Cp at `ALPHAS`,
-``coefficients.csv`` with its C_L, pressure drag and C_M about the quarter chord, and
-``stall.csv`` with the incidence of greatest lift of viscous sweeps.
+``coefficients.csv`` with its C_L, pressure drag and C_M about the quarter chord,
+``viscous.csv`` with polars and the places of free transition (N = 9) of sharp sections,
+``layer-<section>.csv`` with a boundary layer at Re = 1e6 without incidence,
+``stall-reynolds.csv`` with the incidence of greatest lift of viscous sweeps.
 """
 
 import contextlib
@@ -32,7 +34,15 @@ EDGES = ("blunt", "sharp")
 ALPHAS = (0.0, 4.0, 8.0)
 NODES = 160
 STALL_SECTIONS = ("0006", "0009", "0012")
-STALL_REYNOLDS = 3.8e5
+STALL_REYNOLDS = (3.8e5, 1.2e6, 3e6)
+VISCOUS_SECTIONS = {
+    "0006": 4.0,
+    "0009": 6.0,
+    "0012": 6.0,
+    "2412": 6.0,
+}  # largest incidence, degrees
+VISCOUS_REYNOLDS = (4e5, 1e6, 3e6)
+LAYER_SECTION, LAYER_REYNOLDS = "0012", 1e6
 
 _NO_TRAPS = """
 void _gfortran_set_fpe(int traps) { (void)traps; }
@@ -78,10 +88,28 @@ class Xfoil:
         cp = np.array([table[:, -1] for table in tables])
         return Solution(cp, polar[:, 1], polar[:, 3], polar[:, 4])
 
-    def viscous_sweep(self, nodes: Array, reynolds: float, last: float) -> Array:
-        """Rows (incidence [deg], C_L) that converge in steps of 0.25 deg, free transition."""
-        sweep = ["ITER 200", f"VISC {reynolds:g}", "PACC", "polar.txt", "", f"ASEQ 0 {last:g} 0.25"]
-        return self._run(nodes, ["OPER", *sweep], timeout=120.0)[:, :2]
+    def viscous_sweep(
+        self, nodes: Array, reynolds: float, last: float, step: float = 0.25
+    ) -> Array:
+        """Polar of the incidences from 0 that converge, free transition with N = 9.
+
+        Columns: incidence [deg], C_L, C_D, pressure drag, C_M, transition on the upper and on the
+        lower side (x/c).
+        """
+        sweep = f"ASEQ 0 {last:g} {step:g}"
+        commands = ["OPER", "ITER 200", f"VISC {reynolds:g}", "PACC", "polar.txt", "", sweep]
+        return self._run(nodes, commands, timeout=120.0)[:, :7]
+
+    def layer(self, nodes: Array, reynolds: float, alpha: float) -> Array:
+        """Boundary layer of the upper side, from the stagnation point to the trailing edge.
+
+        Columns: arc length on the contour, x, edge speed, momentum thickness, shape factor.
+        """
+        commands = ["ITER 200", f"VISC {reynolds:g}", "PACC", "polar.txt", "", f"ALFA {alpha:g}"]
+        self._run(nodes, ["OPER", *commands, "DUMP layer.txt"], timeout=60.0)
+        lines = (self.folder / "layer.txt").read_text(encoding="utf-8").splitlines()[1:]
+        table = np.array([line.split()[:8] for line in lines[: len(nodes)]], dtype=np.float64)
+        return table[table[:, 3] > 0.0][:, [0, 1, 3, 5, 7]]
 
     def _run(self, nodes: Array, commands: Sequence[str], timeout: float) -> Array:
         """Run commands on the nodes; return the polar's rows."""
@@ -156,15 +184,49 @@ def make_inviscid_tables(xfoil: Xfoil) -> None:
     write(FOLDER / "coefficients.csv", header, coefficients)
 
 
+def stall_row(xfoil: Xfoil, name: str, reynolds: float) -> list[str]:
+    """Incidence of greatest lift of a symmetric section."""
+    sweep = xfoil.viscous_sweep(naca(name, "sharp"), reynolds, last=20.0)
+    alpha, lift = sweep[np.argmax(sweep[:, 1]), :2]
+    figures = (f"{int(name) / 100:g}", f"{reynolds:g}", f"{alpha:.2f}", f"{lift:.4f}")
+    return [f"naca{name}", *figures]
+
+
 def make_stall_table(xfoil: Xfoil) -> None:
     """Incidence of greatest lift of symmetric sections."""
+    rows = [stall_row(xfoil, name, re) for name in STALL_SECTIONS for re in STALL_REYNOLDS]
+    header = ["section", "thickness", "reynolds", "alpha_deg", "cl"]
+    write(FOLDER / "stall-reynolds.csv", header, rows)
+
+
+def make_viscous_table(xfoil: Xfoil) -> None:
+    """Drag and transition of attached flow."""
     rows = []
-    for name in STALL_SECTIONS:
-        sweep = xfoil.viscous_sweep(naca(name, "sharp"), STALL_REYNOLDS, last=15.0)
-        alpha, lift = sweep[np.argmax(sweep[:, 1])]
-        figures = [f"{int(name) / 100:g}", f"{STALL_REYNOLDS:g}", f"{alpha:.2f}", f"{lift:.4f}"]
-        rows.append([f"naca{name}", *figures])
-    write(FOLDER / "stall.csv", ["section", "thickness", "reynolds", "alpha_deg", "cl"], rows)
+    for name, last in VISCOUS_SECTIONS.items():
+        for reynolds in VISCOUS_REYNOLDS:
+            polar = xfoil.viscous_sweep(naca(name, "sharp"), reynolds, last, step=1.0)
+            for alpha, cl, cd, _, cm, upper, lower in polar:
+                figures = (f"{alpha:g}", f"{cl:.4f}", f"{cd:.5f}", f"{cm:.4f}")
+                places = (f"{upper:.4f}", f"{lower:.4f}")
+                rows.append([f"naca{name}", f"{reynolds:g}", *figures, *places])
+    header = [
+        "section",
+        "reynolds",
+        "alpha_deg",
+        "cl",
+        "cd",
+        "cm_quarter",
+        "upper_xtr",
+        "lower_xtr",
+    ]
+    write(FOLDER / "viscous.csv", header, rows)
+
+
+def make_layer_table(xfoil: Xfoil) -> None:
+    """One boundary layer station by station, with XFOIL's edge speed."""
+    table = xfoil.layer(naca(LAYER_SECTION, "sharp"), LAYER_REYNOLDS, 0.0)
+    rows = [[f"{value:.6g}" for value in row] for row in table]
+    write(FOLDER / f"layer-naca{LAYER_SECTION}.csv", ["s", "x", "speed", "theta", "h"], rows)
 
 
 def main() -> None:
@@ -173,6 +235,8 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         xfoil = Xfoil(Path(folder))
         make_inviscid_tables(xfoil)
+        make_viscous_table(xfoil)
+        make_layer_table(xfoil)
         make_stall_table(xfoil)
 
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Small finite-element models of spheres in water, for the checks and for the tests."""
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from functools import cache, cached_property
 
 import ngsolve as ngs
@@ -10,14 +10,16 @@ import numpy as np
 import rslab
 from netgen import occ
 from scipy.sparse import csr_matrix
-from scipy.special import eval_legendre
+from scipy.special import eval_legendre, legendre
 
+from quietblade.linalg import make_solver
 from quietblade.mesh.assembly import csr_of
 from quietblade.mesh.nodal import NodalBasis
 from quietblade.typing import ComplexArray, FloatArray
 from quietblade.vibroacoustics.fluid import Water
 from quietblade.vibroacoustics.multipoles import SurfaceSources
 from quietblade.vibroacoustics.operators import Operators, build_operators, product_space
+from quietblade.vibroacoustics.radiation import Bgt1, RadiationCondition
 
 WATER = Water(density=1000.0, sound_speed=1500.0)
 
@@ -63,24 +65,56 @@ def sphere_mesh(hollow: tuple[float, ...] = ()) -> ngs.Mesh:
     hollow : tuple of float
         Radii of concentric surfaces inside the solid, the first one bounds a vacuum.
     """
-    center = occ.Pnt(0.0, 0.0, 0.0)
     radii = (*hollow, *LAYERS[0])
     sizes = (*([LAYERS[1][0]] * len(hollow)), *LAYERS[1])
-    names = dict.fromkeys(radii, "layer")
-    names |= (
-        {radii[0]: "inside", 0.5: "wet", 1.0: "outer"} if hollow else {0.5: "wet", 1.0: "outer"}
-    )
+    return layered_mesh(radii, sizes, 0.5, hollow=bool(hollow))
+
+
+def layered_mesh(
+    radii: tuple[float, ...],
+    sizes: tuple[float, ...],
+    wetted: float,
+    *,
+    hollow: bool = True,
+    cap: float | None = None,
+) -> ngs.Mesh:
+    """Concentric spheres, solid "blade" inside the wetted radius and "water" outside, curved.
+
+    Parameters
+    ----------
+    radii, sizes : tuples of float
+        Ascending radii of the surfaces, and the edge lengths on them.
+    wetted : float
+        The radius, one of them, where the water begins: boundary "wet".
+    hollow : bool
+        Whether there is a vacuum in the innermost sphere (boundary "inside").
+    cap : float or None
+        Half-angle of a polar cap [rad] of the wetted surface, which becomes "excited".
+    """
+    centre = occ.Pnt(0.0, 0.0, 0.0)
+    names = {radii[-1]: "outer", wetted: "wet"} | ({radii[0]: "inside"} if hollow else {})
     balls = []
     for radius, size in zip(radii, sizes, strict=True):
-        sphere = occ.Sphere(center, radius)
-        sphere.faces.name, sphere.faces.maxh = names[radius], size
-        balls.append(sphere)
+        ball = occ.Sphere(centre, radius)
+        ball.faces.name, ball.faces.maxh = names.get(radius, "layer"), size
+        balls.append(ball)
     parts = [] if hollow else [balls[0].mat("blade")]
     for index in range(1, len(balls)):
         layer = balls[index] - balls[index - 1]
-        parts.append(layer.mat("blade" if radii[index] <= 0.5 else "water"))
+        parts.append(layer.mat("blade" if radii[index] <= wetted else "water"))
+    if cap is not None:
+        parts.append(_cap(balls[radii.index(wetted)], wetted, cap))
     shape = occ.OCCGeometry(occ.Glue(parts))
     return ngs.Mesh(shape.GenerateMesh(maxh=0.4, grading=0.9, optsteps3d=1)).Curve(2)
+
+
+def _cap(ball: occ.Solid, radius: float, angle: float) -> occ.Face:
+    """Part of the sphere's surface within an angle of the z axis, named "excited"."""
+    low = radius * float(np.cos(angle))
+    box = occ.Box(occ.Pnt(-radius, -radius, low), occ.Pnt(radius, radius, 2.0 * radius))
+    cap = max((box * ball).faces, key=lambda face: face.center.z)
+    cap.name = "excited"
+    return cap
 
 
 @dataclass(frozen=True)
@@ -92,6 +126,7 @@ class SphereModel:
     outer: float
     solid: Mapping[str, Elastic]
     water: Water = WATER
+    condition: RadiationCondition = field(default_factory=Bgt1)
 
     @cached_property
     def basis(self) -> NodalBasis:
@@ -100,7 +135,7 @@ class SphereModel:
 
     @cached_property
     def operators(self) -> Operators:
-        """Operators on C0 with first-order BGT."""
+        """Operators on C0 with the condition."""
         parts = {name: linear_elastic(self.fem, e, name) for name, e in self.solid.items()}
         empty = csr_matrix(next(iter(parts.values()))[0].shape)
         return build_operators(
@@ -110,6 +145,7 @@ class SphereModel:
             loss={name: e.loss * parts[name][0] for name, e in self.solid.items()},
             water=self.water,
             radius=self.outer,
+            condition=self.condition,
         )
 
     @cached_property
@@ -128,14 +164,21 @@ class SphereModel:
 
     def forced_by_motion(self, degree: int, omega: float, velocity: float = 1.0) -> ComplexArray:
         """Response (n,) of the water to a radial velocity v P_l(cos theta) of the sphere."""
+        return self.forced_by_motions((degree,), omega, velocity)[0]
+
+    def forced_by_motions(
+        self, degrees: tuple[int, ...], omega: float, velocity: float = 1.0
+    ) -> ComplexArray:
+        """Responses (d, n) of the water to motions of several degrees, with one factor."""
         operators = self.operators
-        blocks = operators.blocks
-        response = np.zeros(operators.size, dtype=np.complex128)
-        response[blocks.u] = self.radial_motion(degree) * velocity / (1j * omega)
+        u, water = operators.blocks.u, operators.blocks.water
+        response = np.zeros((len(degrees), operators.size), dtype=np.complex128)
+        moved = np.array([self.radial_motion(degree) for degree in degrees])
+        response[:, u] = moved * velocity / (1j * omega)
         matrix = operators.at(omega)
-        inner = matrix[blocks.psi][:, blocks.psi]
-        right = -(matrix[blocks.psi][:, blocks.u] @ response[blocks.u])
-        response[blocks.psi] = rslab.ldlt(inner).solve(right)
+        inner = csr_matrix(matrix[water][:, water])
+        right = -(matrix[water][:, u] @ response[:, u].T)
+        response[:, water] = make_solver(precision="double").factor(inner).solve(right).T
         return response
 
     def forced_by_load(self, load: FloatArray, omega: float) -> ComplexArray:
@@ -155,29 +198,25 @@ class SphereModel:
         """Nodal potential (nodes,) of a response."""
         space = product_space(self.fem)
         full = np.zeros(space.ndof, dtype=np.complex128)
-        full[self.operators.free] = response
+        free = self.operators.free
+        full[free] = response[: len(free)]
         return np.asarray(self.basis.to_values(full[space.Range(2).start :]))
 
     def radial_displacement(self, response: ComplexArray) -> ComplexArray:
         """Nodal u . e_r (nodes,), meant for the wetted surface."""
         space = product_space(self.fem)
         full = np.zeros(space.ndof, dtype=np.complex128)
-        full[self.operators.free] = response
+        free = self.operators.free
+        full[free] = response[: len(free)]
         values = self.basis.to_values(full[: space.Range(1).start])
         return np.asarray(np.einsum("ni,ni->n", values, self.basis.points) / self.radius)
 
 
 def harmonic_pressure(degree: int) -> ngs.CoefficientFunction:
     """P_l(cos theta) as a function of place."""
-    distance = ngs.sqrt(ngs.x**2 + ngs.y**2 + ngs.z**2)
-    mu = ngs.z / distance
-    shapes: dict[int, Callable[[], ngs.CoefficientFunction]] = {
-        0: lambda: ngs.CF(1.0),
-        1: lambda: mu,
-        2: lambda: 0.5 * (3.0 * mu**2 - 1.0),
-        3: lambda: 0.5 * (5.0 * mu**3 - 3.0 * mu),
-    }
-    return shapes[degree]()
+    mu = ngs.z / ngs.sqrt(ngs.x**2 + ngs.y**2 + ngs.z**2)
+    powers = legendre(degree).coef[::-1]
+    return sum((float(c) * mu**n for n, c in enumerate(powers)), start=ngs.CF(0.0))
 
 
 @cache

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietblade.flow import PanelSections, PanelSolution
+from quietblade.flow.contours import contour_loads
 from verification.registry import check
 
 Complex = NDArray[np.complex128]
@@ -33,11 +34,14 @@ class CircleImage:
         Exact pressure coefficient at the nodes.
     lift : float
         Exact lift coefficient.
+    stagnation : array (2,)
+        Exact place of the stagnation point at the nose.
     """
 
     contour: NDArray[np.float64]
     cp: NDArray[np.float64]
     lift: float
+    stagnation: NDArray[np.float64]
 
 
 def circle_image(
@@ -66,7 +70,10 @@ def circle_image(
     scaled = (z - z.real.min()) / chord
     scaled[-1] = scaled[0]
     contour = np.stack([scaled.real, scaled.imag], axis=-1)
-    return CircleImage(contour, cp, 2.0 * circulation / chord)
+    at_rest = mapping(np.array(centre + radius * np.exp(1j * (np.pi + 2.0 * alpha + beta))))
+    place = (at_rest - z.real.min()) / chord
+    stagnation = np.array([place.real, place.imag])
+    return CircleImage(contour, cp, 2.0 * circulation / chord, stagnation)
 
 
 def ellipse(thickness: float, alpha: float, nodes: int) -> CircleImage:
@@ -107,6 +114,22 @@ def solved(name: str, nodes: int) -> tuple[CircleImage, PanelSolution]:
     """Exact and panel solutions."""
     exact = SECTIONS[name](nodes)
     return exact, PanelSections(exact.contour[None]).solve(ALPHA)
+
+
+def stagnation_error(name: str, nodes: int) -> float:
+    """Distance of the panel method's stagnation point from the exact one, in chords."""
+    exact, panel = solved(name, nodes)
+    found = PanelSections(exact.contour[None]).stagnation_points(panel)[0]
+    return float(np.linalg.norm(found - exact.stagnation))
+
+
+def moment_error(name: str, nodes: int) -> float:
+    """Error of the moment coefficient about the quarter chord, against the exact pressure."""
+    fine = SECTIONS[name](8001)
+    pressure = np.where(np.isfinite(fine.cp), fine.cp, np.roll(fine.cp, 1))
+    pressure[0] = pressure[1]
+    _, exact = contour_loads(fine.contour[None], pressure[None], np.array([0.25, 0.0]))
+    return float(solved(name, nodes)[1].moment[0] + exact[0])
 
 
 def pressure_error(name: str, nodes: int) -> float:
@@ -154,6 +177,28 @@ def enter(name: str, cp_error: float) -> None:
     def lift() -> float:
         exact, panel = solved(name, 321)
         return float(panel.lift[0] / exact.lift)
+
+    # Linear between nodes on a contour with a curvature: a hundredth of a panel's length.
+    @check(
+        f"flow/{name}-stagnation",
+        quantity=f"distance of the stagnation point from the exact one / chord, {where}, 161 nodes",
+        reference=0.0,
+        source=SOURCE,
+        tolerance=2e-4,
+    )
+    def stagnation() -> float:
+        return stagnation_error(name, 161)
+
+    # Second order, like the lift.
+    @check(
+        f"flow/{name}-moment",
+        quantity=f"error of C_M about the quarter chord, {where}, 321 nodes",
+        reference=0.0,
+        source=f"{SOURCE}; its pressure integrated on 8001 nodes",
+        tolerance=2e-4,
+    )
+    def moment() -> float:
+        return moment_error(name, 321)
 
 
 enter("ellipse", 0.02)

@@ -37,7 +37,7 @@ class Check:
         """Compute the value and judge it."""
         start = perf_counter()
         value = float(self.compute())
-        passed = abs(value - self.reference) <= self.tolerance
+        passed = bool(abs(value - self.reference) <= self.tolerance)
         return Row(
             self.id,
             self.quantity,

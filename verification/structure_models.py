@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Small solid models of beams, blocks and rings, for the checks and for the tests."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import cached_property
 from itertools import combinations
 
 import ngsolve as ngs
@@ -15,12 +14,16 @@ from scipy.sparse.linalg import LinearOperator, eigsh
 from quietblade.linalg import make_solver
 from quietblade.materials import ElasticMaterial, IsotropicSVK
 from quietblade.mesh.nodal import NodalBasis
-from quietblade.propulsion.structure import Spin, Structure
+from quietblade.propulsion.loading import Spin
+from quietblade.propulsion.structure import Structure, StructureState
 from quietblade.propulsion.tangent import Tangent
 from quietblade.typing import BoolArray, FloatArray
 
 SIDES = "left|right|lower|upper"
 SURFACE = f"{SIDES}|tip"
+
+# From the first corner of a hexahedron to the opposite one along three edges, all positive.
+_KUHN = ((0, 1, 2, 6), (0, 5, 1, 6), (0, 2, 3, 6), (0, 3, 7, 6), (0, 4, 5, 6), (0, 7, 4, 6))
 
 
 def box_mesh(
@@ -30,8 +33,9 @@ def box_mesh(
     *,
     in_film: Callable[[FloatArray], BoolArray] | None = None,
     move: Callable[[FloatArray], FloatArray] | None = None,
+    tetrahedra: bool = False,
 ) -> ngs.Mesh:
-    """Mesh a box with hexahedra between the given planes.
+    """Mesh a box with hexahedra between the given planes, or with six tetrahedra in each.
 
     Boundaries: ``root`` and ``tip`` (least and greatest z), ``left`` and ``right`` (x), ``lower``
     and ``upper`` (y).
@@ -44,6 +48,8 @@ def box_mesh(
         Says of cell centres (n, 3) whether they belong to the material ``film`` (else ``blade``).
     move : callable or None
         Maps the vertices (n, 3) to other places.
+    tetrahedra : bool
+        Kuhn's division of the hexahedra.
     """
     shape = (len(x), len(y), len(z))
     points = np.stack(np.meshgrid(x, y, z, indexing="ij"), axis=-1).reshape(-1, 3)
@@ -60,7 +66,7 @@ def box_mesh(
     netgen.AddPoints(np.ascontiguousarray(points if move is None else move(points)))
     regions = [(n, part) for n, part in (("blade", ~film), ("film", film)) if part.any()]
     for index, (name, part) in enumerate(regions, start=1):
-        _add(netgen, 3, index, cells[part])
+        _add(netgen, 3, index, cells[part][:, _KUHN].reshape(-1, 4) if tetrahedra else cells[part])
         netgen.SetMaterial(index, name)
     sides = {
         "root": number[:, :, 0], "tip": number[:, :, -1], "left": number[0], "right": number[-1],
@@ -70,7 +76,9 @@ def box_mesh(
         netgen.Add(FaceDescriptor(surfnr=index, domin=1, domout=0, bc=index))
         netgen.SetBCName(index - 1, name)
         faces = np.stack([grid[:-1, :-1], grid[1:, :-1], grid[1:, 1:], grid[:-1, 1:]], axis=-1)
-        _add(netgen, 2, index, faces.reshape(-1, 4))
+        quads = faces.reshape(-1, 4)
+        halves = quads[:, [[0, 1, 2], [0, 2, 3]]].reshape(-1, 3)
+        _add(netgen, 2, index, halves if tetrahedra else quads)
     return ngs.Mesh(netgen)
 
 
@@ -110,24 +118,52 @@ class Beam:
         mass = self.density * self.height**2
         return float(np.sqrt(mass * self.length**4 / self.bending_stiffness))
 
-    @cached_property
-    def mesh(self) -> ngs.Mesh:
-        """One hexahedron across the section, whose centre is on the z axis."""
-        side = np.array([-0.5, 0.5]) * self.height
-        return box_mesh(side, side, np.linspace(0.0, self.length, self.cells + 1))
+    def mesh(self, *, root: float = 0.0, beyond: int = 0) -> ngs.Mesh:
+        """One hexahedron across the section, whose centre is on the z axis, from z = root on.
 
-    def structure(self, spin: Spin = Spin()) -> Structure:  # noqa: B008  # frozen
-        """Clamp the beam at z = 0; pressure may act on all other faces."""
+        ``beyond`` cells more continue the beam past its length.
+        """
+        side = np.array([-0.5, 0.5]) * self.height
+        planes = root + np.arange(self.cells + beyond + 1) * self.length / self.cells
+        return box_mesh(side, side, planes)
+
+    def structure(
+        self,
+        spin: Spin = Spin(),  # noqa: B008  # frozen
+        *,
+        wetted: str = SURFACE,
+        root: float = 0.0,
+        beyond: int = 0,
+        clamped: str | None = "root",
+        guided: Mapping[str, str] | None = None,
+    ) -> Structure:
+        """Clamp the beam at z = root; pressure may act on all other faces, or those named."""
         material = IsotropicSVK("beam", self.density, self.youngs_modulus, 0.0)
-        return Structure(self.mesh, {"blade": material}, wetted=SURFACE, spin=spin)
+        return Structure(
+            self.mesh(root=root, beyond=beyond), {"blade": material}, wetted=wetted, spin=spin,
+            clamped=clamped, guided=guided,
+        )  # fmt: skip
 
     def tip_load(self, structure: Structure, force: FloatArray) -> FloatArray:
         """Dead load of a force [N] spread evenly over the tip face."""
+        return traction_load(structure, np.asarray(force) / self.height**2, "tip")
+
+    def line_load(self, structure: Structure, force: FloatArray) -> FloatArray:
+        """Dead load of a force per length [N/m] spread evenly over the volume."""
         space = structure.forms.V
-        work = ngs.LinearForm(space)
-        traction = ngs.CF(tuple(np.asarray(force, dtype=float) / self.height**2))
-        work += ngs.InnerProduct(traction, space.TestFunction()) * ngs.ds("tip")
+        body = ngs.CF(tuple(np.asarray(force, dtype=float) / self.height**2))
+        work = ngs.LinearForm(ngs.InnerProduct(body, space.TestFunction()) * ngs.dx)
         return np.array(work.Assemble().vec)
+
+
+def traction_load(
+    structure: Structure, traction: FloatArray | ngs.CoefficientFunction, boundary: str
+) -> FloatArray:
+    """Dead load of a traction [Pa], three numbers or a function of place, on a boundary."""
+    space = structure.forms.V
+    field = traction if isinstance(traction, ngs.CoefficientFunction) else ngs.CF(tuple(traction))
+    work = ngs.LinearForm(ngs.InnerProduct(field, space.TestFunction()) * ngs.ds(boundary))
+    return np.array(work.Assemble().vec)
 
 
 def voigt_stiffness(material: ElasticMaterial) -> FloatArray:
@@ -152,10 +188,25 @@ def voigt_stiffness(material: ElasticMaterial) -> FloatArray:
     return stiffness
 
 
-def mean_displacement(structure: Structure, values: FloatArray, boundary: str) -> FloatArray:
-    """Mean nodal displacement of a boundary, (3,) [m]."""
-    mean: FloatArray = values[structure.basis.nodes_of(boundary, 1)].mean(axis=0)
-    return mean
+def piola_stress(material: ElasticMaterial, F: ngs.CoefficientFunction) -> ngs.CoefficientFunction:
+    """First Piola-Kirchhoff stress [Pa] of a law at a deformation gradient, from its energy."""
+    gradient = F.MakeVariable()
+    return material.energy(gradient).Diff(gradient)
+
+
+def cauchy_stress(
+    structure: Structure, state: StructureState, region: str
+) -> ngs.CoefficientFunction:
+    """Cauchy stress [Pa] of an equilibrium in a region, a function of the undeformed place."""
+    forms = structure.forms
+    F = forms.gradient(forms.displacement(state.displacement)).MakeVariable()
+    if region in forms.mixed:
+        film_pressure = ngs.GridFunction(forms.P)
+        film_pressure.vec.FV().NumPy()[:] = state.film_pressure
+        energy = forms.mixed[region].energy(F, film_pressure)
+    else:
+        energy = forms.elastic[region].energy(F)
+    return energy.Diff(F) * F.trans / ngs.Det(F)
 
 
 def uniform_pressure(basis: NodalBasis, boundary: str, pressure: float) -> FloatArray:

@@ -1,20 +1,14 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """From words to physics: the same numbers arrive, and estimates are right."""
 
-from dataclasses import replace
-from math import pi, radians
+from math import pi
 from typing import Any
 
-import ngsolve as ngs
 import numpy as np
 import pytest
-from netgen.csg import unit_cube
 
 from quietblade.case import Case
-from quietblade.case.library import NAMES
 from quietblade.case.presets import preset_text
-from quietblade.materials import LIBRARY, IsotropicSVK, MooneyRivlin, OrthotropicSVK
-from quietblade.materials.axes import as_coefficient, ply_axes, section_directions
 from quietblade.study import translate
 from quietblade.study.preflight import bending_wavelength, preflight
 
@@ -37,50 +31,6 @@ def test_twisted_blade() -> None:
     assert np.degrees(blade.blade_angle(np.array([0.0, 1.0]))) == pytest.approx([-18.7, -53.1])
     assert blade.sweep(np.array([0.5])) == pytest.approx([0.015])
     assert blade.camber(np.array([0.5])) == pytest.approx([0.015])
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_library_of_the_case_is_the_library_of_materials(name: str) -> None:
-    part = "film" if name == "viscoelastic-paper" else "blade"
-    case = preset("paper-aluminium").varied({f"{part}.material": name})
-    made, wanted = translate.build_materials(case)[part], LIBRARY[name].material
-    if isinstance(made, OrthotropicSVK):
-        span = ply_axes(radians(45.0), *section_directions(0.0))
-        assert isinstance(span, np.ndarray)
-        assert np.asarray(made.axes) == pytest.approx(span)
-        made, wanted = (replace(m, axes=np.eye(3)) for m in (made, wanted))
-        assert all(getattr(made, k) == getattr(wanted, k) for k in made.__dict__ if k != "axes")
-    else:
-        assert made == wanted
-
-
-def test_materials_of_the_paper() -> None:
-    materials = translate.build_materials(preset("paper-aluminium"))
-    assert materials["blade"] == IsotropicSVK("aluminium", 2500.0, 65e9, 0.36)
-    assert materials["film"] == MooneyRivlin("polymer", 1400.0, 0.238e6, 0.523e6, 2.2e9, 0.21)
-
-
-def test_fibres_follow_the_twist() -> None:
-    case = preset("twisted").varied(
-        {"blade.material": "woven-carbon-paper", "blade.hub_radius": "0 mm", "blade.span": "1 m"}
-    )
-    made = translate.build_materials(case)["blade"]
-    assert isinstance(made, OrthotropicSVK)
-    mesh = ngs.Mesh(unit_cube.GenerateMesh(maxh=1.0))
-    field = as_coefficient(made.axes)
-    angle = translate.span_function(case.blade.blade_angle)
-    for z in (0.0, 0.123, 0.5, 0.871, 1.0):
-        here = float(angle(np.array([z]))[0])
-        wanted = ply_axes(radians(45.0), *section_directions(here))
-        assert np.reshape(field(mesh(0.3, 0.3, z)), (3, 3)) == pytest.approx(wanted, abs=1e-5)
-
-
-def test_blade_angle_field_reaches_a_little_beyond_the_ends() -> None:
-    case = preset("twisted").varied({"blade.hub_radius": "1e-4 mm", "blade.span": "0.9999999 m"})
-    field = translate.blade_angle_field(case)
-    mesh = ngs.Mesh(unit_cube.GenerateMesh(maxh=1.0))
-    assert field(mesh(0.2, 0.2, 0.0)) == pytest.approx(radians(-18.7), abs=1e-6)
-    assert field(mesh(0.2, 0.2, 1.0)) == pytest.approx(radians(-53.1), abs=1e-6)
 
 
 def test_the_rest_arrives() -> None:

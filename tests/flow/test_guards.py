@@ -9,6 +9,17 @@ import pytest
 from quietblade.errors import GeometryError
 from quietblade.flow import PanelSections, check_contours
 from quietblade.flow.crossing import crossing_panels
+from quietblade.flow.guards import (
+    ClockwiseContourError,
+    ClusteredNodesError,
+    ContourError,
+    CrossingContourError,
+    KinkedContourError,
+    LostNodesError,
+    OpenContourError,
+    TooFewNodesError,
+    UnresolvedNoseError,
+)
 from quietblade.typing import FloatArray
 from tests.flow.shapes import naca, turn
 
@@ -36,12 +47,22 @@ WRONG: dict[str, Callable[[], FloatArray]] = {
     "not finite": lambda: with_nodes((35, np.nan, 0.0)),
 }
 
+KINDS: dict[str, type[ContourError]] = {
+    "clockwise": ClockwiseContourError,
+    "open contour": OpenContourError,
+    "nearly coincide": ClusteredNodesError,
+    "unresolved nose": UnresolvedNoseError,
+    "kink": KinkedContourError,
+    "cross": CrossingContourError,
+    "not finite": LostNodesError,
+}
+
 
 @pytest.mark.parametrize("name", WRONG)
 def test_wrong_contours_are_refused_by_name(name: str) -> None:
     wrong = WRONG[name]()
     right = naca(0.12, n=len(wrong)) if len(wrong) > 60 else wrong
-    with pytest.raises(GeometryError, match=name) as caught:
+    with pytest.raises(KINDS[name], match=name) as caught:
         PanelSections(np.array([right, wrong, wrong]))
     first = 1 if len(wrong) > 60 else 0
     assert f"section {first} of 3" in str(caught.value)
@@ -49,7 +70,7 @@ def test_wrong_contours_are_refused_by_name(name: str) -> None:
 
 
 def test_shape_and_number_of_nodes() -> None:
-    with pytest.raises(GeometryError, match="19 nodes"):
+    with pytest.raises(TooFewNodesError, match="19 nodes"):
         check_contours(naca()[None, :19])
     with pytest.raises(GeometryError, match="expected \\(sections, nodes, 2\\)"):
         check_contours(naca())

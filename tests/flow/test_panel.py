@@ -118,6 +118,34 @@ def test_camber_makes_a_moment_nose_down() -> None:
     assert solution.moment.item() == pytest.approx(-0.0531, abs=1e-3)
 
 
+def test_many_incidences_from_one_factorisation() -> None:
+    sections = PanelSections(np.array([naca(0.12), naca(0.12, 0.02)]))
+    alpha = np.radians([-2.0, 0.0, 3.0])
+    together = sections.solve(alpha[:, None])
+    assert together.cp.shape == (3, 2, 161)
+    for k, angle in enumerate(alpha):
+        np.testing.assert_array_equal(together.lift[k], sections.solve(angle).lift)
+
+
+def test_the_stagnation_point_moves_to_the_lower_side_with_incidence() -> None:
+    sections = PanelSections(naca(0.12)[None])
+    solution = sections.solve(np.radians([[-4.0], [0.0], [4.0]]))
+    places = sections.stagnation_points(solution)[:, 0]
+    np.testing.assert_allclose(places[1], 0.0, atol=1e-12)
+    np.testing.assert_allclose(places[0], places[2] * [1.0, -1.0], atol=1e-12)
+    assert places[2, 1] < 0.0 < places[2, 0]
+    before = int(solution.stagnation[2, 0])
+    assert solution.cp[2, 0, before : before + 2].max() > 0.95
+
+
+def test_no_stagnation_point_at_the_nose_is_nan() -> None:
+    sections = PanelSections(naca(0.12)[None])
+    solution = sections.solve(np.radians(180.0))
+    assert (
+        np.isnan(solution.stagnation).all() == np.isnan(sections.stagnation_points(solution)).all()
+    )
+
+
 def test_sections_of_no_thickness_are_refused() -> None:
     flat = naca() * [1.0, 0.0]
     with pytest.raises(GeometryError, match="no thickness"):

@@ -173,3 +173,15 @@ def test_refusals_name_the_section() -> None:
 def test_sections_from_the_tip_to_the_root_are_refused_when_solved() -> None:
     with pytest.raises(GeometryError, match="clockwise"):
         PanelSections(section_frames(fin(naca())[::-1]).contours)
+
+
+def test_mean_line_and_thickness_are_those_of_the_family() -> None:
+    contour = naca(0.12, 0.04, 0.002)
+    sections = section_frames(fin(contour, 5))
+    x, y = sections.mean_line()[2].T
+    height, _ = NacaFourDigit().camber_line(x, 0.04)
+    np.testing.assert_allclose(y, height, atol=1e-12)
+    half = NacaFourDigit().half_thickness(x, 0.12, 0.002)
+    np.testing.assert_allclose(sections.thickness_distribution()[2], 2.0 * half, atol=1e-12)
+    assert sections.thickness()[2] == pytest.approx(sections.thickness_distribution()[2].max())
+    np.testing.assert_allclose([x[0], y[0], x[-1], y[-1]], [0.0, 0.0, 1.0, 0.0], atol=1e-12)

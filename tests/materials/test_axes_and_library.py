@@ -6,7 +6,10 @@ import pytest
 from quietblade.errors import MaterialError
 from quietblade.materials import (
     LIBRARY,
+    IsotropicSVK,
+    MooneyRivlin,
     OrthotropicSVK,
+    PlyStrength,
     find_material,
     ply_axes,
     section_directions,
@@ -58,8 +61,38 @@ def test_axes_that_are_no_rotation_are_refused() -> None:
 
 
 def test_library_knows_the_papers_materials_and_their_source() -> None:
-    assert set(LIBRARY) == {"aluminium-paper", "woven-carbon-paper", "viscoelastic-paper"}
-    assert all("Table 2" in entry.source for entry in LIBRARY.values())
-    assert find_material("viscoelastic-paper").shear_modulus == pytest.approx(1.522e6)
+    paper = {"aluminium-paper", "woven-carbon-paper", "viscoelastic-paper"}
+    assert paper < set(LIBRARY)
+    assert all("Table 2" in LIBRARY[name].source for name in paper)
+    film = find_material("viscoelastic-paper")
+    assert isinstance(film, MooneyRivlin)
+    assert film.shear_modulus == pytest.approx(1.522e6)
     with pytest.raises(MaterialError, match="Did you mean 'aluminium-paper'"):
         find_material("aluminum-paper")
+
+
+@pytest.mark.parametrize("name", LIBRARY)
+def test_every_material_of_the_library_says_where_it_is_from(name: str) -> None:
+    entry = LIBRARY[name]
+    assert entry.name == entry.material.name == name
+    assert len(entry.source) > 20
+    assert entry.note
+
+
+def test_unidirectional_plies_of_the_library_are_transversely_isotropic() -> None:
+    for name in ("carbon-epoxy-t300", "carbon-epoxy-as4", "glass-epoxy-ud"):
+        ply = find_material(name)
+        assert isinstance(ply, OrthotropicSVK)
+        assert ply.g23 == pytest.approx(ply.e2 / (2 * (1 + ply.nu23)), rel=1e-3)
+        assert (ply.e2, ply.g12, ply.nu12) == (ply.e3, ply.g13, ply.nu13)
+        assert ply.strength is not None
+        # compression along fibres is weaker than tension, across them stronger
+        assert ply.strength.xc < ply.strength.xt
+        assert ply.strength.yc > ply.strength.yt
+
+
+def test_strengths_are_positive() -> None:
+    with pytest.raises(MaterialError, match="yc > 0"):
+        PlyStrength(1.0, 1.0, 1.0, -1.0, 1.0)
+    with pytest.raises(MaterialError, match="yield_strength > 0"):
+        IsotropicSVK("metal", 1.0, 1.0, 0.3, yield_strength=0.0)

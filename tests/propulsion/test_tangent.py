@@ -2,15 +2,17 @@
 from dataclasses import replace
 from functools import cache
 
+import ngsolve as ngs
 import numpy as np
 import pytest
 from scipy.sparse import csr_matrix
 
 from quietblade.materials import find_material
+from quietblade.mesh.assembly import csr_of
 from quietblade.propulsion.structure import Structure
-from quietblade.propulsion.tangent import Tangent, compute_tangent
+from quietblade.propulsion.tangent import ELASTIC, FILM, Tangent, compute_tangent
 from quietblade.typing import FloatArray
-from tests.propulsion.solid_models import bent_plate, plate
+from tests.propulsion.solid_models import bent_plate, plate, plate_mesh
 from verification.structure_models import SURFACE, Beam, box_mesh, dry_modes
 
 PIECES = ("elastic", "film", "film_isochoric_material", "load", "spin", "mass")
@@ -202,3 +204,95 @@ def test_a_beam_without_film_has_no_loss() -> None:
     t = compute_tangent(structure, structure.rest())
     assert t.loss().nnz == 0
     assert t.loss("paper").shape == t.mass.shape
+
+
+# -- pieces by name -------------------------------------------------------------------------------
+
+
+def whole(form: str) -> csr_matrix:
+    """Second variation of the energy of a part of the bent plate, assembled at once."""
+    forms, state = plate().forms, bent_plate()
+    terms = {"elastic": forms.elastic_terms(), "film": forms.mixed_terms()}[form]
+    return forms.linearise(terms, state.unknowns)
+
+
+@pytest.mark.parametrize(("form", "names"), [("elastic", ELASTIC), ("film", FILM)])
+def test_pieces_add_up_to_the_second_variation_of_the_energy(
+    form: str, names: tuple[str, ...]
+) -> None:
+    exact = whole(form)
+    assert largest(tangent().sum(names) - exact) <= 1e-11 * largest(exact)
+    assert all(largest(tangent().pieces[name]) > 0.0 for name in names)
+
+
+def test_a_name_that_is_no_piece_is_refused() -> None:
+    with pytest.raises(ValueError, match="no piece 'rubber' of the tangent; it has elastic_mat"):
+        tangent().sum(["rubber"])
+
+
+def test_material_pieces_store_no_negative_energy() -> None:
+    vectors = np.random.default_rng(8).standard_normal((plate().forms.ndof, 10))
+    for name in ("elastic_material", "film_isochoric_material"):
+        matrix = tangent().pieces[name]
+        assert np.einsum("ik,ik->k", vectors, matrix @ vectors).min() > 0.0
+
+
+def test_geometric_stiffness_is_the_work_of_the_stress_on_second_order_strain() -> None:
+    forms, state = plate().forms, bent_plate()
+    u, v = forms.X.TnT()[0][0], forms.X.TnT()[1][0]
+    F = ngs.Id(3) + ngs.Grad(forms.displacement(state.displacement))
+    E = (0.5 * (F.trans * F - ngs.Id(3))).MakeVariable()
+    stress = forms.elastic["blade"].energy_of_strain(E).Diff(E)
+    stress = 0.5 * (stress + stress.trans)  # the energy is differentiated by all nine components
+    term = ngs.InnerProduct(ngs.Grad(u) * stress, ngs.Grad(v)) * ngs.dx("blade")
+    form = forms.form([term])
+    form.Assemble()
+    exact, piece = csr_of(form), tangent().pieces["elastic_geometric"]
+    material = tangent().pieces["elastic_material"]
+    assert largest(piece - exact) <= 1e-13 * largest(material)
+    assert largest(piece - exact) <= 1e-9 * largest(exact)
+
+
+def test_shape_and_stress_can_be_taken_alone() -> None:
+    structure, state = plate(), bent_plate()
+    shape = compute_tangent(structure, state, prestress=False)
+    stress = compute_tangent(structure, state, shape=False)
+    neither = compute_tangent(structure, state, shape=False, prestress=False)
+    both, rest = tangent(), rest_tangent()
+    assert largest(neither.stiffness() - rest.stiffness()) <= 1e-12 * largest(rest.stiffness())
+    for name in ("elastic_material", "film_isochoric_material", "film_constraint"):
+        assert largest(shape.pieces[name] - both.pieces[name]) == 0.0
+        assert largest(stress.pieces[name] - rest.pieces[name]) == 0.0
+        assert largest(shape.pieces[name] - rest.pieces[name]) > 0.0
+    for name in ("elastic_geometric", "film_geometric"):
+        assert largest(shape.pieces[name]) == 0.0
+        # the material stiffness is what its rounding scales with
+        size = largest(both.pieces["elastic_material"])
+        assert largest(stress.pieces[name] - both.pieces[name]) <= 1e-12 * size
+    assert largest(shape.load) == largest(shape.spin) == largest(shape.pieces["film_pressure"]) == 0
+    assert largest(stress.load) > 0.0
+    # a bent plate under lift: each of the two moves the frequencies by itself
+    squares = [dry_modes(t, 2).squares for t in (rest, shape, stress, both)]
+    for changed in squares[1:]:
+        assert np.abs(changed / squares[0] - 1.0).max() > 1e-4
+
+
+def test_each_material_with_a_loss_factor_has_its_own_loss() -> None:
+    mesh = plate_mesh()
+    metal = replace(find_material("aluminium-paper"), loss_factor=0.01)
+    film = find_material("viscoelastic-paper")
+    structure = Structure(mesh, {"blade": metal, "film": film}, wetted=SURFACE)
+    t = compute_tangent(structure, structure.rest())
+    losses = t.losses()
+    assert set(losses) == {"blade", "film"}
+    assert largest(losses["blade"] - 0.01 * t.pieces["elastic_material"]) == 0.0
+    assert largest(losses["film"] - t.loss()) == 0.0
+    assert largest(t.losses("paper")["film"] - t.loss("paper")) == 0.0
+    assert set(tangent().losses()) == {"film"}
+
+
+def test_a_large_dropped_part_is_noticed() -> None:
+    assert tangent().notices == ()
+    large = replace(tangent(), dropped_load=0.9)
+    assert "skew part of the load stiffness" in str(large.notices[0])
+    assert large.notices[0].value == 0.9

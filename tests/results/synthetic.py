@@ -128,7 +128,13 @@ def make_static(shape: Shape) -> m.StaticResult:
             lift_coefficient=lift_coefficient,
             lift_per_length=lift_per_length,
             warp=share * camber * 0.02,
+            reynolds=np.tile(chord * SPEED / 1.1e-6, (3, 1)),
+            drag_coefficient=np.full(alpha.shape, 0.008),
+            suction=1.2 * lift_coefficient,
+            cavitation_number=np.tile(1e5 / pressure, (3, 1)),
+            shedding_frequency=np.tile(0.21 * SPEED / (0.02 * chord), (3, 1)),
         ),
+        performance=make_performance(lift),
         mid_section=make_mid_section(shape),
         tip_displacement=_tip(shape),
         force=np.stack([-0.1 * lift, lift, 0.0 * lift], axis=1),
@@ -142,6 +148,28 @@ def make_static(shape: Shape) -> m.StaticResult:
         film_shear_strain_p99=0.82 * shape.shear,
         max_film_shear_strain_place=np.array([0.02, 0.0, 0.27]),
         max_blade_shear_strain=0.11 * shape.shear,
+    )
+
+
+def make_performance(lift: FloatArray) -> m.PerformanceFigures:
+    turns, diameter = ROTATION / (2.0 * np.pi), 2.0 * (HUB + SPAN)
+    thrust, torque = 0.09 * lift, 0.1 * lift * SPEED / ROTATION
+    ones = np.ones(3)
+    return m.PerformanceFigures(
+        inflow="none",
+        friction="ittc-1957",
+        blades=1,
+        advance_speed=SPEED,
+        diameter=diameter * ones,
+        thrust=thrust,
+        torque=torque,
+        advance_ratio=SPEED / (turns * diameter) * ones,
+        thrust_coefficient=thrust / (DENSITY * turns**2 * diameter**4),
+        torque_coefficient=torque / (DENSITY * turns**2 * diameter**5),
+        efficiency=thrust * SPEED / (torque * ROTATION),
+        inviscid_efficiency=ones,
+        inception_depth=-2.0,
+        inception_speed=11.0,
     )
 
 

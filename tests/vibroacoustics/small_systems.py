@@ -4,7 +4,9 @@
 import numpy as np
 import scipy.sparse as sp
 
+from quietblade.materials.viscoelastic import ConstantLoss
 from quietblade.typing import FloatArray
+from quietblade.vibroacoustics.loss import loss_term
 from quietblade.vibroacoustics.operators import Blocks, Operators
 
 SOUND_SPEED, RADIUS = 300.0, 2.0
@@ -40,7 +42,7 @@ def random_operators(
     exterior[-5:, -5:] = positive(5, 0.5, 1.0)
     terms = {
         "K": stiffness,
-        "L": placed(u, u, loss * (0.5 * shear + 20.0 * np.diag(rng.random(n_u)))),
+        loss_term("film"): placed(u, u, loss * (0.5 * shear + 20.0 * np.diag(rng.random(n_u)))),
         "M": placed(u, u, positive(n_u, 1.0, 2.0)),
         "C": placed(u, psi, coupling) + placed(psi, u, coupling.T),
         "H": placed(psi, psi, positive(n_psi, 0.5, 5.0)),
@@ -56,6 +58,7 @@ def random_operators(
         SOUND_SPEED,
         1.0,
         RADIUS,
+        moduli={"film": ConstantLoss(1.0)},
         exterior=_symmetrical(placed(psi, psi, exterior)),
     )
 

@@ -1,44 +1,26 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Conditions on the outer sphere."""
 
-from collections.abc import Mapping
 from dataclasses import replace
 
-import ngsolve as ngs
 import numpy as np
 import pytest
-from scipy.sparse import csr_matrix
 from scipy.special import eval_legendre
 
 from quietblade.errors import MeshError
+from quietblade.vibroacoustics.dtn import Dtn
 from quietblade.vibroacoustics.fluid import Water
 from quietblade.vibroacoustics.operators import build_operators
 from quietblade.vibroacoustics.power import radiated_power, surface_power
 from quietblade.vibroacoustics.radiation import (
     Bgt1,
+    Bgt2,
     check_sphere,
     sphere_mass,
-    sphere_stiffness,
     static_exterior,
 )
 from verification.acoustics_closed_forms import bgt1, bgt2, moving_sphere, power_ratio, reflection
 from verification.acoustics_models import SOFT, WATER, ball, linear_elastic
-
-
-class SecondOrder:
-    """Second-order BGT, to see that a condition with two matrices finds its place."""
-
-    name = "BGT-2"
-
-    def matrices(self, fem: ngs.Mesh, water: Water, outer: str) -> Mapping[str, csr_matrix]:
-        return {
-            "Q": csr_matrix(water.density * sphere_mass(fem, outer)),
-            "T": csr_matrix(water.density * sphere_stiffness(fem, outer)),
-        }
-
-    def factors(self, omega: complex, sound_speed: float, radius: float) -> Mapping[str, complex]:
-        first = 1j * omega / sound_speed + 1.0 / radius
-        return {"Q": -first, "T": -1.0 / (2.0 * first)}
 
 
 @pytest.mark.parametrize("degree", [0, 1, 2, 3])
@@ -69,12 +51,30 @@ def test_factor_of_first_order_bgt(omega: complex) -> None:
     assert Bgt1().factors(omega, 1500.0, 1.3) == {"Q": -(1j * omega + 1500.0 / 1.3)}
 
 
+@pytest.mark.parametrize("condition", [Bgt1(), Bgt2(), Dtn(3)])
+def test_coefficients_and_factors_are_one_condition(condition: Bgt1 | Bgt2 | Dtn) -> None:
+    # On a harmonic: Q is rho (or rho/c), T is rho l (l + 1)/R^2, Y_l is rho on its own degree.
+    kr, radius, sound_speed = 0.7, 1.3, 1500.0
+    factors = condition.factors(kr * sound_speed / radius, sound_speed, radius)
+    scale = 1.0 / sound_speed if condition.name == "BGT-1" else 1.0
+    found = [
+        -radius
+        * (
+            scale * factors["Q"]
+            + factors.get("T", 0.0) * degree * (degree + 1) / radius**2
+            + factors.get(f"Y{degree}", 0.0)
+        )
+        for degree in range(6)
+    ]
+    np.testing.assert_allclose(condition.coefficients(5, kr), found, rtol=1e-13)
+
+
 def test_another_condition_finds_its_place() -> None:
     # Second order is exact for degree 1, where first order is 2.6 times too loud.
     model = ball()
     stiffness, mass = linear_elastic(model.fem, SOFT, "blade")
     operators = build_operators(
-        model.fem, stiffness=stiffness, mass=mass, water=WATER, radius=1.0, condition=SecondOrder()
+        model.fem, stiffness=stiffness, mass=mass, water=WATER, radius=1.0, condition=Bgt2()
     )
     other = replace(model)
     other.__dict__["operators"] = operators

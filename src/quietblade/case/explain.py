@@ -2,6 +2,7 @@
 """From validation errors to findings that a user can act on."""
 
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from typing import Any, get_args
 
 from pydantic import BaseModel, ValidationError
@@ -9,11 +10,13 @@ from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
 
 from quietblade.case.fields import CASE_PROBLEM, Quantity
+from quietblade.case.laminate import PlyWords
 from quietblade.case.library import LAW_OF
-from quietblade.case.materials import LAWS
+from quietblade.case.materials import BLADE_LAWS, FILM_LAWS, LAWS, ply_findings
 from quietblade.case.problems import Path, dotted, nearest, suggestion
 from quietblade.case.source import Finding
 from quietblade.case.spans import Spanwise
+from quietblade.case.structure import LOADS
 
 Model = type[BaseModel]
 
@@ -22,12 +25,30 @@ _TYPES = {
     "float_type": ("a number is needed", "Write a number such as 0.5, without quotes"),
     "string_type": ("text is needed", "Write it in quotes"),
     "finite_number": ("is not a finite number", "Write a finite number"),
+    "tuple_type": ("a list is needed", "Write the entries in [ ], tables below a header in [[ ]]"),
     "dict_type": ("a table is needed", "Write its keys below a header in [ ]"),
     "model_type": ("a table is needed", "Write its keys below a header in [ ]"),
     "model_attributes_type": ("a table is needed", "Write its keys below a header in [ ]"),
 }
-_BLADE_LAWS = ("isotropic", "orthotropic")
-_FILM_LAWS = ("mooney-rivlin",)
+
+
+@dataclass(frozen=True)
+class _Choice:
+    """Entries of one table that are of several models, told apart by one key."""
+
+    key: str
+    what: str
+    models: Mapping[str, Model]
+
+    def model(self, entry: Any) -> Model | None:
+        word = entry.get(self.key) if isinstance(entry, Mapping) else None
+        return self.models.get(word) if isinstance(word, str) else None
+
+
+_CHOICES = {
+    "materials": _Choice("law", "a material law", LAWS),
+    "loads": _Choice("kind", "a kind of load", LOADS),
+}
 
 
 def explain(error: ValidationError, data: Mapping[str, Any], root: Model) -> Iterator[Finding]:
@@ -55,15 +76,16 @@ def _explain(detail: ErrorDetails, data: Mapping[str, Any], root: Model) -> Find
     if kind == "extra_forbidden":
         return _unknown(path, data, root)
     if kind in ("union_tag_not_found", "union_tag_invalid"):
-        fault = "is missing" if kind == "union_tag_not_found" else "is not a material law"
-        return Finding((*path, "law"), fault, f"Known: {_listed(LAWS)}")
+        choice = _CHOICES[str(path[0])]
+        fault = "is missing" if kind == "union_tag_not_found" else f"is not {choice.what}"
+        return Finding((*path, choice.key), fault, f"Known: {_listed(choice.models)}")
     message, remedy = _TYPES.get(kind, (detail["msg"][:1].lower() + detail["msg"][1:], ""))
     return Finding(path, message, remedy)
 
 
 def _in_file(loc: tuple[int | str, ...]) -> Path:
-    # pydantic inserts the law of a material behind its name
-    return loc[:2] + loc[3:] if loc[:1] == ("materials",) and len(loc) > 2 else loc
+    # pydantic inserts the word that tells the model behind the name or number of the entry
+    return loc[:2] + loc[3:] if loc[0] in _CHOICES and len(loc) > 2 else loc
 
 
 def _missing(path: Path, data: Mapping[str, Any], root: Model) -> Finding:
@@ -106,12 +128,26 @@ def _unknown(path: Path, data: Mapping[str, Any], root: Model) -> Finding:
 
 
 def _model_at(path: Path, data: Mapping[str, Any], root: Model) -> Model | None:
-    if not path:
-        return root
-    if path[0] == "materials":
-        return LAWS.get(_laws(data).get(str(path[-1]), ""))
-    info = root.model_fields.get(str(path[0]))
-    return _table_model(info.annotation) if info and len(path) == 1 else None
+    """Model of the table at a path; None where there is no table."""
+    choice = _CHOICES.get(str(path[0])) if path else None
+    if choice is not None:
+        if path[2:3] == ("plies",) and len(path) == 4:
+            return PlyWords
+        return choice.model(_at(path, data)) if len(path) == 2 else None
+    model: Model | None = root
+    for part in path:
+        info = model.model_fields.get(str(part)) if model else None
+        model = _table_model(info.annotation) if info else None
+    return model
+
+
+def _at(path: Path, data: Any) -> Any:
+    for part in path:
+        try:
+            data = data[part]
+        except (LookupError, TypeError):
+            return None
+    return data
 
 
 def _table_model(annotation: Any) -> Model | None:
@@ -130,7 +166,8 @@ def material_findings(data: Mapping[str, Any]) -> Iterator[Finding]:
                 ("materials", name), "is the name of a library material", "Choose another name"
             )
     laws = dict(LAW_OF) | _laws(data)
-    for part, allowed in (("blade", _BLADE_LAWS), ("film", _FILM_LAWS)):
+    yield from ply_findings(data, laws)
+    for part, allowed in (("blade", BLADE_LAWS), ("film", FILM_LAWS)):
         table = data.get(part)
         name = table.get("material") if isinstance(table, Mapping) else None
         if not isinstance(name, str):

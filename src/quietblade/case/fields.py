@@ -122,10 +122,17 @@ AngularSpeed = Annotated[float, Quantity(units.ANGULAR_SPEED)]
 Frequency = Annotated[float, Quantity(units.FREQUENCY, above=0.0)]
 Pressure = Annotated[float, Quantity(units.PRESSURE, above=0.0)]
 PressureOrZero = Annotated[float, Quantity(units.PRESSURE, least=0.0)]
+SignedPressure = Annotated[float, Quantity(units.PRESSURE)]
+Force = Annotated[float, Quantity(units.FORCE)]
+ForcePerLength = Annotated[float, Quantity(units.LINE_FORCE)]
+Stiffness = Annotated[float, Quantity(units.LINE_FORCE, above=0.0)]
+AngularStiffness = Annotated[float, Quantity(units.MOMENT_PER_ANGLE, above=0.0)]
+Acceleration = Annotated[float, Quantity(units.ACCELERATION)]
 Modulus = Annotated[float, Quantity(units.MODULUS, above=0.0)]
 ModulusOrZero = Annotated[float, Quantity(units.MODULUS, least=0.0)]
 Density = Annotated[float, Quantity(units.DENSITY, above=0.0)]
 Viscosity = Annotated[float, Quantity(units.VISCOSITY, above=0.0)]
+LevelDifference = Annotated[float, Quantity(units.LEVEL, above=0.0)]
 Fraction = Annotated[
     float,
     Quantity(
@@ -185,6 +192,18 @@ Band = Annotated[tuple[Frequency, Frequency], _increasing("band"), entries(2)]
 
 Point = Annotated[tuple[Coordinate, Coordinate, Coordinate], entries(3)]
 """Position in the blade's axes."""
+
+SpanChord = Annotated[tuple[Fraction, Fraction], entries(2)]
+"""Place on the blade: span fraction and chord fraction."""
+
+ForceVector = Annotated[tuple[Force, Force, Force], entries(3)]
+LineForceVector = Annotated[tuple[ForcePerLength, ForcePerLength, ForcePerLength], entries(3)]
+AccelerationVector = Annotated[tuple[Acceleration, Acceleration, Acceleration], entries(3)]
+StiffnessVector = Annotated[tuple[Stiffness, Stiffness, Stiffness], entries(3)]
+AngularStiffnessVector = Annotated[
+    tuple[AngularStiffness, AngularStiffness, AngularStiffness], entries(3)
+]
+"""Components along the blade's axes x, y, z."""
 
 
 def one_of(literal: Any, what: str) -> BeforeValidator:

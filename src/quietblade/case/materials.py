@@ -1,25 +1,38 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Materials as a case file says them, with the conditions that make a solid possible."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from math import sqrt
-from typing import Annotated, Literal, TypeAlias
+from typing import Annotated, Any, Literal, TypeAlias
 
+import numpy as np
 from pydantic import Field, model_validator
 
+from quietblade.case import units
 from quietblade.case.fields import (
     Angle,
     Density,
     Modulus,
     ModulusOrZero,
     Number,
+    Quantity,
+    Text,
     Words,
-    between,
+    entries,
     wrong,
 )
+from quietblade.case.laminate import LaminateWords
+from quietblade.case.loss import STRUCTURAL_LOSS, FilmLossFactor, LossFactor
+from quietblade.case.problems import suggestion
+from quietblade.case.source import Finding
 
 Ratio = Number
-LossFactor = Annotated[Number, between(0.0, 10.0)]
+Strength = Modulus
+
+StiffnessRow = Annotated[tuple[Annotated[float, Quantity(units.MODULUS)], ...], entries(6)]
+"""Six entries of a stiffness, of either sign."""
+
+_SOURCE = "Where the constants come from, for people"
 
 _REVERSED = "nu_ij is strain j from stress i; some tables print nu_ji = nu_ij E_j / E_i"
 
@@ -31,13 +44,18 @@ class IsotropicWords(Words):
     density: Density = Field(title="Density", description="Mass per undeformed volume")
     E: Modulus = Field(title="Young's modulus", description="Young's modulus E")
     nu: Ratio = Field(title="Poisson's ratio", description="Poisson's ratio nu, between -1 and 1/2")
+    loss_factor: LossFactor = Field(0.0, title="Loss factor", description=STRUCTURAL_LOSS)
+    yield_strength: Strength | None = Field(
+        None, title="Yield strength", description="Yield or 0.2 % proof stress of a metal"
+    )
+    source: Text = Field("", title="Source", description=_SOURCE)
 
     @model_validator(mode="after")
     def _check_definite(self) -> "IsotropicWords":
         if not -1.0 < self.nu < 0.5:
             raise wrong(
                 "the stiffness is not positive definite: -1 < nu < 1/2 fails",
-                "A nearly incompressible solid needs the law mooney-rivlin",
+                "A nearly incompressible solid needs the law neo-hookean or mooney-rivlin",
                 at=("nu",),
             )
         return self
@@ -69,8 +87,21 @@ class OrthotropicWords(Words):
         0.0,
         title="Ply angle",
         description="Angle from the span to axis 1, turning about the thickness axis towards the "
-        "trailing edge",
+        "trailing edge; in a laminate the ply's own angle counts instead",
     )
+    Xt: Strength | None = Field(None, title="Xt", description="Tensile strength along axis 1")
+    Xc: Strength | None = Field(None, title="Xc", description="Compressive strength along axis 1")
+    Yt: Strength | None = Field(None, title="Yt", description="Tensile strength along axis 2")
+    Yc: Strength | None = Field(None, title="Yc", description="Compressive strength along axis 2")
+    S12: Strength | None = Field(None, title="S12", description="Shear strength in the ply")
+    loss_factor: LossFactor = Field(0.0, title="Loss factor", description=STRUCTURAL_LOSS)
+    source: Text = Field("", title="Source", description=_SOURCE)
+
+    @property
+    def strengths(self) -> tuple[float, float, float, float, float] | None:
+        """Xt, Xc, Yt, Yc, S12 [Pa] if they are given."""
+        given = (self.Xt, self.Xc, self.Yt, self.Yc, self.S12)
+        return None if None in given else given  # type: ignore[return-value]
 
     def ratio(self, i: int, j: int) -> float:
         """Poisson's ratio nu_ij for i < j, from whichever of nu_ij and nu_ji is given."""
@@ -80,6 +111,17 @@ class OrthotropicWords(Words):
         inverse: float = getattr(self, f"nu{j}{i}")
         moduli: tuple[float, ...] = (self.E1, self.E2, self.E3)
         return inverse * moduli[i - 1] / moduli[j - 1]
+
+    @model_validator(mode="after")
+    def _check_strengths(self) -> "OrthotropicWords":
+        given = [key for key in ("Xt", "Xc", "Yt", "Yc", "S12") if getattr(self, key) is not None]
+        if given and len(given) < 5:
+            raise wrong(
+                f"only {', '.join(given)} of the five strengths are given",
+                "Give Xt, Xc, Yt, Yc and S12, or none",
+                at=(given[0],),
+            )
+        return self
 
     @model_validator(mode="after")
     def _check_definite(self) -> "OrthotropicWords":
@@ -123,6 +165,73 @@ class OrthotropicWords(Words):
             raise wrong(f"{direct} is missing", f"Add {direct} (or {inverse}). {_REVERSED}")
 
 
+class AnisotropicWords(Words):
+    """General anisotropic Saint-Venant-Kirchhoff solid.
+
+    Rows and columns of the stiffness: 11, 22, 33, 23, 13, 12, for engineering shear strains.
+    """
+
+    law: Literal["anisotropic"] = Field(
+        title="Law", description="Anisotropic Saint-Venant-Kirchhoff"
+    )
+    density: Density = Field(title="Density", description="Mass per undeformed volume")
+    stiffness: Annotated[tuple[StiffnessRow, ...], entries(6)] = Field(
+        title="Stiffness", description="Six rows of six moduli, symmetric"
+    )
+    ply_angle: Angle = Field(
+        0.0,
+        title="Ply angle",
+        description="Angle from the span to axis 1, turning about the thickness axis towards the "
+        "trailing edge",
+    )
+    loss_factor: LossFactor = Field(0.0, title="Loss factor", description=STRUCTURAL_LOSS)
+    source: Text = Field("", title="Source", description=_SOURCE)
+
+    @model_validator(mode="after")
+    def _check_definite(self) -> "AnisotropicWords":
+        C = np.array(self.stiffness)
+        if np.abs(C - C.T).max() > 1e-9 * np.abs(C).max():
+            i, j = np.unravel_index(int(np.argmax(np.abs(C - C.T))), C.shape)
+            raise wrong(
+                f"is not symmetric: row {i + 1}, column {j + 1} and its mirror image differ",
+                "Rows and columns are 11, 22, 33, 23, 13, 12",
+                at=("stiffness",),
+            )
+        diagonal = np.diag(C)
+        scale = 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))
+        least = float(np.linalg.eigvalsh(scale[:, None] * C * scale)[0])
+        if not (least > 0.0 and np.all(diagonal > 0.0)):
+            raise wrong(
+                "is not positive definite: the least eigenvalue, scaled to a unit diagonal, is "
+                f"{least:.4g}",
+                "Some strain would release energy; check signs, and the order 11, 22, 33, 23, 13, "
+                "12",
+                at=("stiffness",),
+            )
+        return self
+
+
+class NeoHookeanWords(Words):
+    """Nearly incompressible neo-Hookean solid with a constant loss factor."""
+
+    law: Literal["neo-hookean"] = Field(
+        title="Law", description="Nearly incompressible neo-Hookean"
+    )
+    density: Density = Field(title="Density", description="Mass per undeformed volume")
+    shear_modulus: Modulus = Field(title="Shear modulus", description="Shear modulus G")
+    bulk_modulus: Modulus = Field(title="Bulk modulus", description="Bulk modulus K")
+    loss_factor: FilmLossFactor = Field(
+        title="Loss factor",
+        description="Loss factor eta of the complex shear modulus G (1 + i eta)",
+    )
+    source: Text = Field("", title="Source", description=_SOURCE)
+
+    @model_validator(mode="after")
+    def _check_stable(self) -> "NeoHookeanWords":
+        _check_bulk(self.bulk_modulus, self.shear_modulus, "shear_modulus")
+        return self
+
+
 class MooneyRivlinWords(Words):
     """Nearly incompressible Mooney-Rivlin solid with a constant loss factor."""
 
@@ -133,10 +242,11 @@ class MooneyRivlinWords(Words):
     c10: ModulusOrZero = Field(title="C10", description="Coefficient of the first invariant")
     c01: ModulusOrZero = Field(title="C01", description="Coefficient of the second invariant")
     bulk_modulus: Modulus = Field(title="Bulk modulus", description="Bulk modulus K")
-    loss_factor: LossFactor = Field(
+    loss_factor: FilmLossFactor = Field(
         title="Loss factor",
         description="Loss factor eta of the complex shear modulus G (1 + i eta)",
     )
+    source: Text = Field("", title="Source", description=_SOURCE)
 
     @property
     def shear_modulus(self) -> float:
@@ -147,22 +257,78 @@ class MooneyRivlinWords(Words):
     def _check_stable(self) -> "MooneyRivlinWords":
         if self.shear_modulus <= 0.0:
             raise wrong("the shear modulus 2 (c10 + c01) is zero", "Give c10 or c01 a value")
-        if self.bulk_modulus <= 2.0 / 3.0 * self.shear_modulus:
-            raise wrong(
-                "Poisson's ratio would be negative: bulk_modulus > 2/3 of the shear modulus "
-                f"2 (c10 + c01) = {self.shear_modulus:.4g} Pa fails",
-                "Check the units of c10, c01 and bulk_modulus",
-                at=("bulk_modulus",),
-            )
+        _check_bulk(self.bulk_modulus, self.shear_modulus, "2 (c10 + c01)")
         return self
 
 
-SolidWords: TypeAlias = IsotropicWords | OrthotropicWords | MooneyRivlinWords
+def _check_bulk(bulk_modulus: float, shear_modulus: float, shear_name: str) -> None:
+    if bulk_modulus <= 2.0 / 3.0 * shear_modulus:
+        raise wrong(
+            "Poisson's ratio would be negative: bulk_modulus > 2/3 of the shear modulus "
+            f"{shear_name} = {shear_modulus:.4g} Pa fails",
+            "Check the units of the moduli",
+            at=("bulk_modulus",),
+        )
+
+
+SolidWords: TypeAlias = (
+    IsotropicWords
+    | OrthotropicWords
+    | AnisotropicWords
+    | LaminateWords
+    | MooneyRivlinWords
+    | NeoHookeanWords
+)
 MaterialWords = Annotated[SolidWords, Field(discriminator="law")]
 
 LAWS: Mapping[str, type[SolidWords]] = {
     "isotropic": IsotropicWords,
     "orthotropic": OrthotropicWords,
     "mooney-rivlin": MooneyRivlinWords,
+    "neo-hookean": NeoHookeanWords,
+    "anisotropic": AnisotropicWords,
+    "laminate": LaminateWords,
 }
 """Model of each law."""
+
+BLADE_LAWS = ("isotropic", "orthotropic", "anisotropic", "laminate")
+"""Laws that the blade may have."""
+
+FILM_LAWS = ("mooney-rivlin", "neo-hookean")
+"""Laws that the film may have."""
+
+PLY_LAWS = ("isotropic", "orthotropic")
+"""Laws that the plies of a laminate may have."""
+
+
+def plies_in(data: Mapping[str, Any]) -> Iterator[tuple[tuple[str | int, ...], str]]:
+    """Place and material of each ply of a case's laminates that names one, in its plain data."""
+    own = data.get("materials")
+    for name, words in own.items() if isinstance(own, Mapping) else ():
+        plies = words.get("plies") if isinstance(words, Mapping) else None
+        for number, ply in enumerate(plies if isinstance(plies, list | tuple) else ()):
+            material = ply.get("material") if isinstance(ply, Mapping) else None
+            if isinstance(material, str):
+                yield ("materials", name, "plies", number, "material"), material
+
+
+def ply_findings(data: Mapping[str, Any], laws: Mapping[str, str]) -> Iterator[Finding]:
+    """Check that the materials of plies exist and can be plies.
+
+    Parameters
+    ----------
+    data : mapping
+        Plain data of a case.
+    laws : mapping
+        Law of each material that the case may name.
+    """
+    for path, name in plies_in(data):
+        if name not in laws:
+            near = suggestion(name, laws)
+            yield Finding(path, "there is no material of this name", near or "Define it")
+        elif laws[name] in LAWS and laws[name] not in PLY_LAWS:
+            yield Finding(
+                path,
+                f"has the law {laws[name]}, which a ply cannot have",
+                f"A ply needs the law {' or '.join(PLY_LAWS)}",
+            )

@@ -14,16 +14,19 @@ from pydantic import Field, PrivateAttr, ValidationError
 
 from quietblade.case.explain import explain, material_findings
 from quietblade.case.fields import Text, Words
+from quietblade.case.flow import FlowWords
+from quietblade.case.laminate import LaminateWords
 from quietblade.case.library import library_material
 from quietblade.case.materials import MaterialWords, SolidWords
 from quietblade.case.problems import InvalidCaseError
 from quietblade.case.source import Finding, Source, parse_source, read_source
+from quietblade.case.structure import LoadWords, PressureLoadWords, RootWords
 from quietblade.case.tables import (
+    FILE,
     AcousticsWords,
     BladeWords,
     ExcitationWords,
     FilmWords,
-    FlowWords,
     MeshWords,
     SolverWords,
     StaticWords,
@@ -41,6 +44,10 @@ class Case(Words):
     film: FilmWords | None = Field(None, title="Film", description="Embedded viscoelastic film")
     materials: dict[str, MaterialWords] = Field(
         default_factory=dict, title="Materials", description="Materials by name"
+    )
+    root: RootWords = Field(RootWords(), title="Root", description="How the blade is held")
+    loads: tuple[LoadWords, ...] = Field(
+        (), title="Loads", description="Steady loads besides those of the flow"
     )
     water: WaterWords = Field(WaterWords(), title="Water", description="The water around")
     flow: FlowWords = Field(title="Flow", description="Steady operation")
@@ -129,6 +136,22 @@ class Case(Words):
         """Name of the file that the case was read from."""
         return self._source.file
 
+    @property
+    def folder(self) -> FilePath:
+        """Folder in which the files that the case names are looked for."""
+        return FilePath(self._source.file).parent
+
+    @property
+    def files(self) -> Mapping[str, FilePath]:
+        """Files that the case names, by key."""
+        named = {}
+        if self.blade.section.startswith(FILE):
+            named["blade.section"] = self.blade.section.removeprefix(FILE).strip()
+        for number, load in enumerate(self.loads):
+            if isinstance(load, PressureLoadWords) and load.table is not None:
+                named[f"loads[{number}].table"] = load.table
+        return {key: self.folder / name for key, name in named.items()}
+
     def plain(self) -> dict[str, Any]:
         """Return JSON-able data with SI values; `from_plain` reads it."""
         return self.model_dump(mode="json", exclude_none=True)
@@ -141,10 +164,15 @@ class Case(Words):
         """
         plain = self.plain()
         del plain["title"], plain["materials"], plain["blade"]["material"]
-        plain["materials"] = {"blade": self.material("blade").model_dump(mode="json")}
+        plain["materials"] = {"blade": self._physics_of(self.material("blade"))}
         if self.film is not None:
             del plain["film"]["material"]
-            plain["materials"]["film"] = self.material("film").model_dump(mode="json")
+            plain["materials"]["film"] = self._physics_of(self.material("film"))
+        # what a file says counts, not its name
+        plain["files"] = {
+            key: hashlib.sha256(file.read_bytes()).hexdigest() if file.is_file() else ""
+            for key, file in self.files.items()
+        }
         text = json.dumps(_rounded(plain), sort_keys=True, separators=(",", ":"))
         return hashlib.sha256(text.encode()).hexdigest()
 
@@ -159,8 +187,26 @@ class Case(Words):
         words = {"blade": self.blade, "film": self.film}[part]
         if words is None:
             raise KeyError(part)
-        own = self.materials.get(words.material)
-        return own if own is not None else library_material(words.material)
+        return self.named_material(words.material)
+
+    def named_material(self, name: str) -> SolidWords:
+        """Material of a name, from the case or the library.
+
+        Raises
+        ------
+        KeyError
+            There is none.
+        """
+        own = self.materials.get(name)
+        return own if own is not None else library_material(name)
+
+    def _physics_of(self, words: SolidWords) -> dict[str, Any]:
+        """Return what a material says, with the materials of its plies and without its source."""
+        plain = words.model_dump(mode="json", exclude={"source"})
+        if isinstance(words, LaminateWords):
+            for ply in plain["plies"]:
+                ply["material"] = self._physics_of(self.named_material(ply["material"]))
+        return plain
 
     def invalid(self, *findings: Finding) -> InvalidCaseError:
         """Make the error that points at these findings in the file of this case."""

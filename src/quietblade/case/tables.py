@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """The tables of a case file: blade, film, water, flow, static, acoustics, excitation and so on."""
 
-from typing import Annotated, Literal
+from itertools import pairwise
+from typing import Annotated, Literal, get_args
 
-from pydantic import AfterValidator, Field, model_validator
+from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from quietblade.case.fields import (
-    AngularSpeed,
     Band,
     Count,
     Density,
@@ -15,6 +15,7 @@ from quietblade.case.fields import (
     Frequency,
     Length,
     LengthOrZero,
+    LevelDifference,
     Number,
     Point,
     Pressure,
@@ -28,6 +29,7 @@ from quietblade.case.fields import (
     one_of,
     wrong,
 )
+from quietblade.case.problems import suggestion
 from quietblade.case.spans import (
     ConstantSpan,
     SpanAngle,
@@ -37,15 +39,25 @@ from quietblade.case.spans import (
     SpanThickness,
 )
 
-Section = Literal["naca-4"]
-Inflow = Literal["none"]
+Section = Literal[
+    "naca-4",
+    "naca-5-210", "naca-5-220", "naca-5-230", "naca-5-240", "naca-5-250",
+    "naca-5-221", "naca-5-231", "naca-5-241", "naca-5-251",
+    "naca-16-a10", "naca-16-a08",
+    "naca-66-a08", "naca-66-a10",
+]  # fmt: skip
+Method = Literal["newton", "fixed-point", "aitken", "anderson"]
 Configuration = Literal["C0", "C1"]
-Radiation = Literal["bgt1"]
+Radiation = Literal["dtn", "bgt1", "bgt2"]
+Sweep = Literal["reduced", "direct"]
 Tangent = Literal["full", "paper"]
 Loss = Literal["isochoric", "paper"]
 Side = Literal["upper", "lower"]
 SolverName = Literal["auto", "rslab", "mkl-pardiso", "superlu"]
 Precision = Literal["mixed", "double"]
+
+FILE = "file:"
+"""What the name of a file of coordinates begins with."""
 
 _MOST_FREQUENCIES = 100_000
 
@@ -59,10 +71,24 @@ def _inside(extent: tuple[float, float], ends: str) -> tuple[float, float]:
     return extent
 
 
-def _odd(count: int) -> int:
-    if count % 2 == 0:
-        raise wrong("is even", f"Choose an odd number such as {count + 1}: one node is the nose")
-    return count
+def _section(word: object) -> object:
+    if isinstance(word, str) and word.startswith(FILE):
+        if not word.removeprefix(FILE).strip():
+            raise wrong("names no file", f'Write section = "{FILE}foil.dat"')
+        return word
+    if word not in get_args(Section):
+        near = suggestion(word, get_args(Section)) if isinstance(word, str) else ""
+        known = ", ".join(f'"{name}"' for name in get_args(Section))
+        remedy = f'{near} Known: {known}, or "{FILE}" and the name of a file of coordinates'
+        raise wrong("is not a section family", remedy.strip())
+    return word
+
+
+def _ramp(fractions: tuple[float, ...]) -> tuple[float, ...]:
+    steps = (0.0, *fractions)
+    if any(a >= b for a, b in pairwise(steps)) or fractions[-1] != 1.0:
+        raise wrong("does not increase from above 0 to 1", "Write for example [0.25, 0.5, 1.0]")
+    return fractions
 
 
 def _distinct(names: tuple[Configuration, ...]) -> tuple[Configuration, ...]:
@@ -78,8 +104,11 @@ class BladeWords(Words):
         title="Hub radius", description="Radius of the root section from the rotor axis"
     )
     span: Length = Field(title="Span", description="Distance from the root to the tip section")
-    section: Annotated[Section, one_of(Section, "a section family")] = Field(
-        "naca-4", title="Section", description="Family of sections"
+    section: Annotated[Text, BeforeValidator(_section)] = Field(
+        "naca-4",
+        title="Section",
+        description="Family of sections, or `file:` and the name of a file of coordinates (Selig "
+        "or Lednicer), beside the case file",
     )
     chord: SpanLength = Field(title="Chord", description="Chord of the sections along the span")
     thickness: SpanThickness = Field(
@@ -147,40 +176,28 @@ class WaterWords(Words):
     )
 
 
-class FlowWords(Words):
-    """Steady operation, and the sections on which the flow is computed."""
-
-    speed: Speed = Field(
-        title="Speed", description="Speed of the water along the rotor axis, downstream"
-    )
-    rotation: AngularSpeed = Field(
-        title="Rotation", description="Angular speed of the blade about the rotor axis"
-    )
-    inflow: Annotated[Inflow, one_of(Inflow, "an inflow model")] = Field(
-        "none", title="Inflow", description="Induced velocities: none (blade elements)"
-    )
-    depth: LengthOrZero = Field(
-        0.0, title="Depth", description="Depth of the rotor axis, for the cavitation check"
-    )
-    atmospheric_pressure: Pressure = Field(
-        101.325e3, title="Atmospheric pressure", description="For the cavitation check"
-    )
-    sections: Annotated[Count, between(5, 2001)] = Field(
-        101, title="Sections", description="Number of sections along the span"
-    )
-    section_nodes: Annotated[Count, between(41, 1001), AfterValidator(_odd)] = Field(
-        161, title="Section nodes", description="Nodes on the contour of a section, odd"
-    )
-
-
 class StaticWords(Words):
     """Iteration between flow and structure."""
 
+    method: Annotated[Method, one_of(Method, "a method of coupling")] = Field(
+        "newton",
+        title="Method",
+        description="Load updated inside Newton's iteration (newton), the plain fixed point of the "
+        "paper (fixed-point), or that accelerated (aitken, anderson)",
+    )
     tolerance: Annotated[Number, between(0.0, 0.1, open_low=True)] = Field(
-        1e-5, title="Tolerance", description="Relative change of the displacement at the end"
+        1e-5,
+        title="Tolerance",
+        description="Estimated relative error of the displacement at the end; of the fixed point, "
+        "as in the paper, its change in the last pass",
     )
     max_iterations: Annotated[Count, between(1, 10_000)] = Field(
         40, title="Largest number of iterations", description="Then the run ends unconverged"
+    )
+    ramp: Annotated[tuple[Number, ...], AfterValidator(_ramp), entries_from(1)] = Field(
+        (1.0,),
+        title="Ramp",
+        description="Fractions of the dynamic pressure on the way, increasing to 1",
     )
     newton_tolerance: Annotated[Number, between(0.0, 1e-2, open_low=True)] = Field(
         1e-8,
@@ -193,6 +210,16 @@ class AcousticsWords(Words):
     """Band, water sphere and linearisation of the vibro-acoustic step."""
 
     band: Band = Field(title="Band", description="Lowest and highest frequency")
+    sweep: Annotated[Sweep, one_of(Sweep, "a sweep")] = Field(
+        "reduced",
+        title="Sweep",
+        description="By a reduced model whose error is known, or a direct solve at each frequency",
+    )
+    accuracy: LevelDifference = Field(
+        0.01,
+        title="Accuracy",
+        description="Largest estimated error of the sound power level by the reduced model",
+    )
     step: Frequency = Field(2.5, title="Step", description="Spacing of the base frequencies")
     points_per_mode: Annotated[Count, between(0, 1001)] = Field(
         9, title="Points per mode", description="Frequencies added around each wet mode"
@@ -203,7 +230,16 @@ class AcousticsWords(Words):
         entries_from(1),
     ] = Field(("C0", "C1"), title="Configurations", description="At rest (C0), under load (C1)")
     radiation: Annotated[Radiation, one_of(Radiation, "a radiation condition")] = Field(
-        "bgt1", title="Radiation", description="Condition on the outer sphere"
+        "dtn",
+        title="Radiation",
+        description="Condition on the outer sphere: exact (dtn), or of Bayliss, Gunzburger and "
+        "Turkel of first (bgt1, the paper) or second order (bgt2)",
+    )
+    radiation_accuracy: Annotated[Number, between(1e-6, 0.1)] = Field(
+        1e-3,
+        title="Radiation accuracy",
+        description="Share of the field that the exact condition (dtn) may get wrong; its degree "
+        "follows from it",
     )
     sphere_radius: Length = Field(title="Sphere radius", description="Radius of the water sphere")
     sphere_centre: Point | None = Field(

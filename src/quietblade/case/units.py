@@ -57,6 +57,13 @@ PRESSURE = Kind("a pressure", "Pa", "101.3 kPa", ("Pa", "kPa", "MPa", "GPa", "ba
 MODULUS = Kind("a modulus", "Pa", "65 GPa", ("Pa", "kPa", "MPa", "GPa"), 1e-3, 1e14)
 DENSITY = Kind("a density", "kg/m^3", "2500 kg/m^3", ("kg/m^3", "g/cm^3"), 1e-3, 1e6)
 VISCOSITY = Kind("a kinematic viscosity", "m^2/s", "1.1e-6 m^2/s", ("m^2/s",), 1e-12, 1e3)
+FORCE = Kind("a force", "N", "120 N", ("N", "kN", "MN"), 1e-9, 1e12)
+LINE_FORCE = Kind("a force per length", "N/m", "250 N/m", ("N/m", "kN/m", "N/mm"), 1e-9, 1e15)
+MOMENT_PER_ANGLE = Kind(
+    "a moment per angle", "N*m/rad", "40 kN*m/rad", ("N*m/rad", "kN*m/rad"), 1e-9, 1e18
+)
+ACCELERATION = Kind("an acceleration", "m/s^2", "9.81 m/s^2", ("m/s^2",), 1e-9, 1e6)
+LEVEL = Kind("a difference of levels", "dB", "0.01 dB", ("dB",), 1e-9, 1e3)
 FRACTION = Kind("a fraction", "", "6 %", ("%",), 0.0, 1e3)
 
 _HUGE = 1e300  # an integer beyond has no float
@@ -64,7 +71,10 @@ _HUGE = 1e300  # an integer beyond has no float
 # what pint's parser raises on nonsense
 _UNREADABLE = (AttributeError, ArithmeticError, AssertionError, LookupError, TypeError, ValueError)
 
-_KINDS = (LENGTH, ANGLE, SPEED, ANGULAR_SPEED, FREQUENCY, PRESSURE, DENSITY, VISCOSITY, FRACTION)
+_KINDS = (
+    LENGTH, ANGLE, SPEED, ANGULAR_SPEED, FREQUENCY, PRESSURE, DENSITY, VISCOSITY, FRACTION, FORCE,
+    LINE_FORCE, MOMENT_PER_ANGLE, ACCELERATION, LEVEL,
+)  # fmt: skip
 
 
 class UnitError(Exception):
@@ -177,6 +187,8 @@ def _root(unit: str) -> tuple[float, Mapping[str, float]]:
     """Factor and powers in root units; radian is one, so that Hz and rad/s differ."""
     if not unit:
         return 1.0, {}
+    if unit == LEVEL.unit:  # a level has no scale factor that a registry of units could know
+        return 1.0, {"level": 1.0}
     registry = _registry()
     quantity = registry.parse_expression(unit)
     if registry.Quantity(0.0, quantity.units).to_root_units().magnitude != 0.0:

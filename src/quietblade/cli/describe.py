@@ -6,7 +6,13 @@ from math import degrees
 from typing import Any
 
 from quietblade.case import Case
-from quietblade.case.materials import IsotropicWords, OrthotropicWords, SolidWords
+from quietblade.case.laminate import LaminateWords
+from quietblade.case.materials import (
+    AnisotropicWords,
+    IsotropicWords,
+    OrthotropicWords,
+    SolidWords,
+)
 from quietblade.case.spans import ConstantSpan, FormulaSpan, SpanValue
 from quietblade.case.units import in_unit
 from quietblade.study.preflight import Preflight
@@ -147,6 +153,9 @@ def _spanwise(words: SpanValue, unit: str, of: str = "") -> str:
 
 
 def _solid(words: SolidWords) -> str:
+    if isinstance(words, LaminateWords):
+        angles = ", ".join(f"{degrees(ply.angle):.4g}" for ply in words.plies)
+        return f"laminate [{angles}] deg x {words.repeat}, {words.drape}, model {words.model}"
     density = f"{words.density:g} kg/m^3"
     if isinstance(words, IsotropicWords):
         return f"isotropic, E = {_gpa(words.E)}, nu = {words.nu:g}, {density}"
@@ -154,8 +163,11 @@ def _solid(words: SolidWords) -> str:
         moduli = f"{_gpa(words.E1)}, {_gpa(words.E2)}, {_gpa(words.E3)}"
         angle = degrees(words.ply_angle)
         return f"orthotropic, E = {moduli}, axis 1 at {angle:.4g} deg to the span, {density}"
+    if isinstance(words, AnisotropicWords):
+        angle = degrees(words.ply_angle)
+        return f"anisotropic, axis 1 at {angle:.4g} deg to the span, {density}"
     shear = f"G = {words.shear_modulus / 1e6:.4g} MPa"
-    return f"Mooney-Rivlin, {shear}, loss factor {words.loss_factor:g}, {density}"
+    return f"{words.law}, {shear}, loss factor {words.loss_factor:g}, {density}"
 
 
 def _mm(value: float) -> str:

@@ -27,6 +27,42 @@ MAX_TURN = np.radians(40.0)
 """Largest angle between neighbouring panels away from the nose and the trailing edge [rad]."""
 
 
+class ContourError(GeometryError):
+    """A section contour that the panel method cannot solve, or not to a useful accuracy."""
+
+
+class TooFewNodesError(ContourError):
+    """Fewer nodes than `MIN_NODES`."""
+
+
+class LostNodesError(ContourError):
+    """Coordinates that are not finite."""
+
+
+class ClockwiseContourError(ContourError):
+    """Nodes in the wrong order, or a section of no thickness."""
+
+
+class OpenContourError(ContourError):
+    """First and last node farther apart than a trailing edge is thick."""
+
+
+class ClusteredNodesError(ContourError):
+    """Nodes that nearly coincide."""
+
+
+class UnresolvedNoseError(ContourError):
+    """Too few nodes at the nose."""
+
+
+class KinkedContourError(ContourError):
+    """A corner away from the nose and the trailing edge."""
+
+
+class CrossingContourError(ContourError):
+    """Panels that cross."""
+
+
 def check_contours(contours: FloatArray) -> None:
     """Refuse contours that the panel method cannot solve, or not to a useful accuracy.
 
@@ -40,10 +76,11 @@ def check_contours(contours: FloatArray) -> None:
 
     Raises
     ------
-    GeometryError
-        Wrong shape or too few nodes, values that are not finite, clockwise order, an open
-        contour, nodes that coincide, an unresolved nose, a kink, panels that cross. The message
-        names the first section that is wrong, the value and the remedy.
+    ContourError
+        As one of its kinds: `TooFewNodesError`, `LostNodesError`, `ClockwiseContourError`,
+        `OpenContourError`, `ClusteredNodesError`, `UnresolvedNoseError`, `KinkedContourError`,
+        `CrossingContourError`. The message names the first section that is wrong, the value and
+        the remedy.
     """
     _check_shape(contours)
     edge = 0.5 * (contours[:, :1] + contours[:, -1:])
@@ -56,11 +93,18 @@ def check_contours(contours: FloatArray) -> None:
     _check_crossing(contours)
 
 
-def _refuse(wrong: BoolArray, what: str, values: FloatArray, limit: str, remedy: str) -> None:
+def _refuse(
+    kind: type[ContourError],
+    wrong: BoolArray,
+    what: str,
+    values: FloatArray,
+    limit: str,
+    remedy: str,
+) -> None:
     """Raise the error for the first section that is wrong."""
     if wrong.any():
         k = int(np.argmax(wrong))
-        raise GeometryError(
+        raise kind(
             f"section {k} of {len(wrong)} (counted from 0): {what}: {values[k]:.4g}, "
             f"limit {limit}. Remedy: {remedy}"
         )
@@ -68,16 +112,17 @@ def _refuse(wrong: BoolArray, what: str, values: FloatArray, limit: str, remedy:
 
 def _check_shape(contours: FloatArray) -> None:
     if contours.ndim != 3 or contours.shape[-1] != 2 or len(contours) == 0:
-        raise GeometryError(
+        raise ContourError(
             f"section contours have shape {contours.shape}, expected (sections, nodes, 2)"
         )
     if contours.shape[1] < MIN_NODES:
-        raise GeometryError(
+        raise TooFewNodesError(
             f"section contours have {contours.shape[1]} nodes, limit at least {MIN_NODES}. "
             "Remedy: use about 160"
         )
     lost = np.count_nonzero(~np.isfinite(contours), axis=(1, 2)).astype(np.float64)
-    _refuse(lost > 0.0, "coordinates that are not finite", lost, "0", "look for NaN in the points")
+    what = "coordinates that are not finite"
+    _refuse(LostNodesError, lost > 0.0, what, lost, "0", "look for NaN in the points")
 
 
 def _check_order(contours: FloatArray, extent: FloatArray) -> None:
@@ -85,6 +130,7 @@ def _check_order(contours: FloatArray, extent: FloatArray) -> None:
     area = 0.5 * np.sum(x * np.roll(y, -1, axis=1) - y * np.roll(x, -1, axis=1), axis=1)
     relative = area / np.where(extent > 0.0, extent, 1.0) ** 2
     _refuse(
+        ClockwiseContourError,
         relative <= 0.0,
         "clockwise contour or no thickness (area / extent^2)",
         relative,
@@ -97,6 +143,7 @@ def _check_order(contours: FloatArray, extent: FloatArray) -> None:
 def _check_opening(contours: FloatArray, extent: FloatArray) -> None:
     gap = np.linalg.norm(contours[:, 0] - contours[:, -1], axis=-1) / extent
     _refuse(
+        OpenContourError,
         gap > MAX_OPENING,
         "open contour (distance of its ends / extent)",
         gap,
@@ -108,6 +155,7 @@ def _check_opening(contours: FloatArray, extent: FloatArray) -> None:
 def _check_spacing(contours: FloatArray, extent: FloatArray) -> None:
     shortest = np.linalg.norm(np.diff(contours, axis=1), axis=-1).min(axis=-1) / extent
     _refuse(
+        ClusteredNodesError,
         shortest < MIN_PANEL,
         "nodes that nearly coincide (shortest panel / extent)",
         shortest,
@@ -124,6 +172,7 @@ def _check_nose(contours: FloatArray, edge: FloatArray, nose: IntArray) -> None:
     inside = position < NOSE_REGION
     count = np.count_nonzero(inside, axis=-1).astype(np.float64)
     _refuse(
+        UnresolvedNoseError,
         count < MIN_NOSE_NODES,
         f"unresolved nose (nodes in the first {NOSE_REGION:g} of the section)",
         count,
@@ -142,6 +191,7 @@ def _check_nose(contours: FloatArray, edge: FloatArray, nose: IntArray) -> None:
     smooth = ~inside[:, 1:-1] & (position[:, 1:-1] < 1.0 - NOSE_REGION)
     largest = np.where(smooth, turn, 0.0).max(axis=-1)
     _refuse(
+        KinkedContourError,
         largest > MAX_TURN,
         "kink (angle between neighbouring panels [rad])",
         largest,
@@ -155,7 +205,7 @@ def _check_crossing(contours: FloatArray) -> None:
     for k, contour in enumerate(close_sharp_edges(contours)):
         sides = crossing_panels(contour)
         if sides is not None:
-            raise GeometryError(
+            raise CrossingContourError(
                 f"section {k} of {len(contours)} (counted from 0): panels {sides[0]} and "
                 f"{sides[1]} cross. Remedy: look for a thickness below zero, or for a "
                 "deformation too large for the section"

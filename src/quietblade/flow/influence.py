@@ -47,8 +47,16 @@ class PanelView:
         cosine = self.start * self.length  # y^2 + x1 x2 = r1^2 - x1 L
         np.subtract(self.square[..., :-1], cosine, out=cosine)
         sine = self.height * self.length
-        result: FloatArray = np.arctan2(sine, cosine, out=cosine)
-        return result
+        # arctan costs less than arctan2. Only points within the circle over a panel, few and near,
+        # see it under more than a right angle; its own nodes lie on that circle.
+        wide = np.flatnonzero(cosine <= 0.0)
+        flat_sine, flat_cosine = sine.reshape(-1), cosine.reshape(-1)
+        angles = np.arctan2(flat_sine[wide], flat_cosine[wide])
+        flat_cosine[wide] = 1.0
+        sine /= cosine
+        np.arctan(sine, out=sine)
+        flat_sine[wide] = angles
+        return sine
 
     def log_ratio(self) -> FloatArray:
         """Return ``ln(r1 / r2)`` (..., P, N - 1)."""

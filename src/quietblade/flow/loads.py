@@ -20,8 +20,12 @@ class SectionLoads:
 
     Attributes
     ----------
+    velocity : array (M, 3)
+        Velocity of the stream that the sections meet, relative to the blade [m/s].
+    induced : array (M, 3)
+        Part of it that the blade's own vortices make; 0 in strip theory [m/s].
     alpha : array (M,)
-        Incidence of the stream on the projected chord [rad].
+        Effective incidence: that of the stream on the projected chord [rad].
     speed : array (M,)
         Speed of the stream normal to the span, ``W_n`` [m/s].
     density : float
@@ -44,6 +48,8 @@ class SectionLoads:
         Part of the force that is perpendicular to the stream, towards the upper side [N/m].
     """
 
+    velocity: FloatArray
+    induced: FloatArray
     alpha: FloatArray
     speed: FloatArray
     density: float
@@ -63,9 +69,10 @@ class SectionLoads:
 class TotalLoads:
     """Loads on the whole blade.
 
-    Inviscid strips lose no power: ``thrust V = torque omega``, but for the numerical drag
-    (`SectionLoads.drag_error`) and the moments about a span that leans along the axis. At small
-    incidence the thrust is a small part of the lift, so that it feels this drag by a few per cent.
+    Inviscid strips without induced velocities lose no power: ``thrust V = torque omega``, but for
+    the numerical drag (`SectionLoads.drag_error`) and the moments about a span that leans along the
+    axis. At small incidence the thrust is a small part of the lift, so that it feels this drag by
+    a few per cent.
 
     Attributes
     ----------
@@ -94,6 +101,8 @@ def section_loads(
     *,
     density: float,
     kinematic_viscosity: float,
+    induced: FloatArray | None = None,
+    panels: PanelSections | None = None,
 ) -> SectionLoads:
     r"""Compute the loads on sections, each in a plane inviscid stream.
 
@@ -105,11 +114,15 @@ def section_loads(
     ----------
     sections : DeformedSections
     velocity : array (M, 3)
-        Velocity of the undisturbed water relative to the blade at the reference points [m/s].
+        Velocity of the stream relative to the blade at the reference points [m/s].
     density : float
         [kg/m3]
     kinematic_viscosity : float
         [m2/s]; the Reynolds number is information only.
+    induced : array (M, 3), optional
+        Part of the velocity that the blade induces [m/s], kept in the result; default 0.
+    panels : PanelSections, optional
+        Solution of ``sections.contours``, if there is one already.
 
     Returns
     -------
@@ -120,11 +133,12 @@ def section_loads(
     GeometryError
         A contour cannot be solved, see `quietblade.flow.guards.check_contours`.
     """
+    panels = PanelSections(sections.contours) if panels is None else panels
     along = np.sum(velocity * sections.chord_direction, axis=-1)
     across = np.sum(velocity * sections.normal, axis=-1)
     alpha, speed = np.arctan2(across, along), np.hypot(along, across)
     dynamic_pressure = 0.5 * density * speed**2
-    solved = PanelSections(sections.contours).solve(alpha)
+    solved = panels.solve(alpha)
     plane_force, turn = contour_loads(sections.contours, solved.cp, MID_CHORD)
 
     scale = (dynamic_pressure * sections.chord)[:, None]
@@ -132,6 +146,8 @@ def section_loads(
     force = scale * np.einsum("md,mdx->mx", plane_force, axes)
     moment = scale * (sections.chord * turn)[:, None] * sections.tangent
     return SectionLoads(
+        velocity=velocity,
+        induced=np.zeros_like(velocity) if induced is None else induced,
         alpha=alpha,
         speed=speed,
         density=density,
@@ -146,6 +162,32 @@ def section_loads(
         moment=moment,
         lift_per_length=scale[:, 0] * solved.lift,
     )
+
+
+def circulation_response(sections: DeformedSections, panels: PanelSections) -> FloatArray:
+    r"""Vectors b (M, 3) that make the circulation of sections: ``gamma = b . W`` (theory: S1-81).
+
+    The vortex strength of the panel method is linear in the components of the stream, and so is
+    the circulation: :math:`b = c\,(\Gamma_0 t + \Gamma_{90} n)` with the circulations in unit
+    streams along and across the chord. The lift per length is :math:`\rho\, b \cdot W\, |W_n|`, the
+    zero-lift direction is perpendicular to b.
+
+    Parameters
+    ----------
+    sections : DeformedSections
+    panels : PanelSections
+        Solution of ``sections.contours``.
+
+    Returns
+    -------
+    array (M, 3)
+        [m]
+    """
+    along, across = (panels.solve(angle).circulation[:, None] for angle in (0.0, 0.5 * np.pi))
+    result: FloatArray = sections.chord[:, None] * (
+        along * sections.chord_direction + across * sections.normal
+    )
+    return result
 
 
 def integrate(sections: DeformedSections, loads: SectionLoads) -> TotalLoads:

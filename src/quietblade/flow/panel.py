@@ -53,6 +53,9 @@ class PanelSolution:
         thrust that more nodes do not remove (-1.2e-3 for a base of 0.6 % of the chord).
     circulation : array (..., M)
         Circulation, clockwise positive; the exact lift coefficient is twice as much.
+    stagnation : array (..., M)
+        Place of the stagnation point at the nose, as a node number with a fraction: 80.25 lies a
+        quarter of the way from node 80 to node 81. See `stagnation_points` for coordinates.
     """
 
     gamma: FloatArray
@@ -61,6 +64,7 @@ class PanelSolution:
     moment: FloatArray
     drag: FloatArray
     circulation: FloatArray
+    stagnation: FloatArray
 
 
 class PanelSections:
@@ -118,12 +122,38 @@ class PanelSections:
             moment=-moment,
             drag=force[..., 0] * cos + force[..., 1] * sin,
             circulation=self._circulation(gamma),
+            stagnation=_stagnation(gamma),
         )
+
+    def stagnation_points(self, solution: PanelSolution) -> FloatArray:
+        """Coordinates (..., M, 2) of the stagnation points at the nose."""
+        before = np.nan_to_num(solution.stagnation).astype(np.int64)
+        section = np.arange(len(self.contours))
+        start = self.contours[section, before]
+        end = self.contours[section, before + 1]
+        fraction = (solution.stagnation - before)[..., None]
+        result: FloatArray = start + fraction * (end - start)
+        return result
 
     def _circulation(self, gamma: FloatArray) -> FloatArray:
         panels = np.linalg.norm(np.diff(self.contours, axis=1), axis=-1)
         result: FloatArray = np.sum(0.5 * (gamma[..., 1:] + gamma[..., :-1]) * panels, axis=-1)
         return result
+
+
+def _stagnation(gamma: FloatArray) -> FloatArray:
+    """Place where the strength changes its sign, linear between nodes (..., M)."""
+    # On the upper side the strength is positive from the trailing edge to this place. At the edge
+    # itself its sign may be lost in rounding.
+    upper = gamma[..., 1:-2] > 0.0
+    change = upper & (gamma[..., 2:-1] <= 0.0)
+    before = 1 + np.argmax(change, axis=-1)
+    pair = np.stack([before, before + 1], axis=-1)
+    ahead, behind = np.moveaxis(np.take_along_axis(gamma, pair, axis=-1), -1, 0)
+    jump = ahead - behind
+    fraction = np.where(change.any(axis=-1), ahead / np.where(jump > 0.0, jump, 1.0), np.nan)
+    result: FloatArray = before + fraction
+    return result
 
 
 def _unit_solutions(contours: FloatArray) -> FloatArray:

@@ -14,6 +14,10 @@ same generator. Two consequences:
 - On a tapered blade the generators fan out; the projection then errs by the product of taper and
   tilt. `DeformedSections.tilt` and `DeformedSections.warp` say how far the sections are from the
   case in which the projection does nothing.
+
+The section frame is planar, not the cylinder of constant radius on which propellers are drawn. The
+two agree where the chord is short against the radius: the arc of a chord c across the radius r is
+longer by the fraction (c/r)^2 / 24, and its ends lie off the plane by c^2 / (8 r).
 """
 
 from dataclasses import dataclass
@@ -80,9 +84,20 @@ class DeformedSections:
 
     def thickness(self) -> FloatArray:
         """Largest distance between nodes that stand opposite (M,), in chords."""
-        opposite = self.contours - self.contours[:, ::-1]
-        result: FloatArray = np.linalg.norm(opposite, axis=-1).max(axis=-1)
+        result: FloatArray = self.thickness_distribution().max(axis=-1)
         return result
+
+    def thickness_distribution(self) -> FloatArray:
+        """Distance between nodes that stand opposite (M, N // 2 + 1), nose to edge, in chords."""
+        half = self.contours.shape[1] // 2
+        opposite = self.contours[:, half::-1] - self.contours[:, half:]
+        result: FloatArray = np.linalg.norm(opposite, axis=-1)
+        return result
+
+    def mean_line(self) -> FloatArray:
+        """Middles between nodes that stand opposite (M, N // 2 + 1, 2), nose to edge, in chords."""
+        half = self.contours.shape[1] // 2
+        return 0.5 * (self.contours[:, half::-1] + self.contours[:, half:])
 
 
 def section_frames(points: FloatArray) -> DeformedSections:

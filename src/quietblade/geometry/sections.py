@@ -10,9 +10,6 @@ from numpy.typing import ArrayLike
 from quietblade.errors import GeometryError
 from quietblade.typing import FloatArray
 
-# Jacobs, Ward, Pinkerton, NACA Report 460 (1933): open trailing edge
-_NACA_4 = (0.2969, -0.1260, -0.3516, 0.2843, -0.1015)
-
 
 class SectionFamily(Protocol):
     """A family of sections on the unit chord: nose (0, 0), middle of the trailing edge (1, 0).
@@ -113,84 +110,6 @@ class SectionFamily(Protocol):
             before = self.point(-side * middle, thickness, camber, te)[..., 0] < x
             low, high = np.where(before, middle, low), np.where(before, high, middle)
         return np.asarray(-side * 0.5 * (low + high), dtype=np.float64)
-
-
-@dataclass(frozen=True)
-class NacaFourDigit(SectionFamily):
-    """NACA 4-digit sections with a blunt trailing edge of exact thickness.
-
-    The open-edge polynomial gets a linear wedge, so that the edge is ``te`` thick; the wedge
-    alters the largest thickness slightly (0006 with te = 0.6 %: 6.14 % instead of 6 %).
-
-    Attributes
-    ----------
-    camber_position : float
-        Chord fraction of the largest camber (second digit / 10).
-    """
-
-    camber_position: float = 0.4
-
-    @property
-    def name(self) -> str:
-        """``"naca-4"``."""
-        return "naca-4"
-
-    def half_thickness(self, x: ArrayLike, thickness: ArrayLike, te: ArrayLike) -> FloatArray:
-        """Half thickness y_t(x) = 5 t (a0 sqrt x + a1 x + ... + a4 x^4) + x (te/2 - y_t(1)).
-
-        Parameters
-        ----------
-        x, thickness, te : array_like
-            Chord fraction, largest thickness / chord, edge thickness / chord; broadcast.
-
-        Returns
-        -------
-        ndarray
-            Half thickness / chord.
-        """
-        x, t = np.asarray(x, dtype=np.float64), np.asarray(thickness, dtype=np.float64)
-        root, *powers = _NACA_4
-        polynomial = root * np.sqrt(x) + np.polynomial.polynomial.polyval(x, [0.0, *powers])
-        wedge = 0.5 * np.asarray(te, dtype=np.float64) - 5.0 * t * sum(_NACA_4)
-        return np.asarray(5.0 * t * polynomial + x * wedge, dtype=np.float64)
-
-    def camber_line(self, x: ArrayLike, camber: ArrayLike) -> tuple[FloatArray, FloatArray]:
-        """Two parabolas that meet at the largest camber.
-
-        Parameters
-        ----------
-        x, camber : array_like
-            Chord fraction, largest camber / chord; broadcast.
-
-        Returns
-        -------
-        tuple of ndarray
-            Height / chord and slope dy/dx.
-        """
-        x, m = np.asarray(x, dtype=np.float64), np.asarray(camber, dtype=np.float64)
-        p = self.camber_position
-        curvature = m / np.where(x < p, p**2, (1.0 - p) ** 2)
-        return m - curvature * (x - p) ** 2, -2.0 * curvature * (x - p)
-
-
-FAMILIES: dict[str, SectionFamily] = {"naca-4": NacaFourDigit()}
-"""Section families by the name that a case file uses."""
-
-
-def section_family(name: str) -> SectionFamily:
-    """Return a family by name.
-
-    Raises
-    ------
-    GeometryError
-        No such family; the message lists those that exist.
-    """
-    try:
-        return FAMILIES[name]
-    except KeyError:
-        raise GeometryError(
-            f"section family {name!r} does not exist; use one of {', '.join(sorted(FAMILIES))}"
-        ) from None
 
 
 @dataclass(frozen=True)

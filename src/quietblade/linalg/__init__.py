@@ -10,6 +10,7 @@ from quietblade.linalg.chain import (
 )
 from quietblade.linalg.protocol import Analysis, Factorization, SparseMatrix, SparseSolver
 from quietblade.linalg.report import Fallback, SolverReport
+from quietblade.linalg.symmetrized import SymmetrizedSolver, make_nearly_symmetric_solver
 
 __all__ = [
     "Analysis",
@@ -21,6 +22,8 @@ __all__ = [
     "SolverReport",
     "SparseMatrix",
     "SparseSolver",
+    "SymmetrizedSolver",
     "default_threads",
+    "make_nearly_symmetric_solver",
     "make_solver",
 ]

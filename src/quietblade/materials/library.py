@@ -1,20 +1,27 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Named materials, each with the source of its constants."""
+"""Named materials, each with the source of its constants.
 
+The constants stand in ``library.toml`` beside this file, which case files read too.
+"""
+
+import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from difflib import get_close_matches
+from importlib.resources import files
 from types import MappingProxyType
+from typing import Any, TypeAlias
 
 from quietblade.errors import MaterialError
 from quietblade.materials.isotropic import IsotropicSVK
 from quietblade.materials.mooney_rivlin import MooneyRivlin
+from quietblade.materials.neo_hookean import NeoHookean
 from quietblade.materials.orthotropic import OrthotropicSVK
+from quietblade.materials.strength import PlyStrength
 
-_PAPER = (
-    "Application of a two-step fluid-structure approach for the analysis of large deformations "
-    "and linear vibrations of propeller blades with embedded viscoelastic material, Table 2"
-)
+LibraryMaterial: TypeAlias = IsotropicSVK | OrthotropicSVK | MooneyRivlin | NeoHookean
+
+_STRENGTHS = ("Xt", "Xc", "Yt", "Yc", "S12")
 
 
 @dataclass(frozen=True)
@@ -23,49 +30,56 @@ class LibraryEntry:
 
     Attributes
     ----------
-    material : IsotropicSVK, OrthotropicSVK or MooneyRivlin
+    material : IsotropicSVK, OrthotropicSVK, MooneyRivlin or NeoHookean
         The material; an orthotropic one still has to be given its axes (`oriented`).
     source : str
         Where the constants come from.
     note : str
-        What a user should know before using them.
+        What a user should know before using them, and how uncertain they are.
     """
 
-    material: IsotropicSVK | OrthotropicSVK | MooneyRivlin
+    material: LibraryMaterial
     source: str
     note: str = ""
 
+    @property
+    def name(self) -> str:
+        """Name in the library and in case files."""
+        return self.material.name
 
-LIBRARY: Mapping[str, LibraryEntry] = MappingProxyType(
-    {
-        entry.material.name: entry
-        for entry in (
-            LibraryEntry(
-                IsotropicSVK("aluminium-paper", 2500.0, 65e9, 0.36),
-                _PAPER,
-                "Softer and lighter than usual aluminium alloys (70 GPa, 0.33, 2700 kg/m3).",
-            ),
-            LibraryEntry(
-                OrthotropicSVK(
-                    "woven-carbon-paper", 1500.0, e1=65e9, e2=65e9, e3=10e9,
-                    g12=5e9, g23=3e9, g13=3e9, nu12=0.04, nu23=0.2, nu13=0.2,
-                ),
-                _PAPER,
-                "Woven carbon-epoxy as one orthotropic solid; the paper lays its fibres at -45 and "
-                "+45 degrees to the span: axes = ply_axes(pi / 4, ...).",
-            ),
-            LibraryEntry(
-                MooneyRivlin("viscoelastic-paper", 1400.0, 0.238e6, 0.523e6, 2.2e9, 0.21),
-                _PAPER,
-                "Constant loss factor, an average over 100 to 200 Hz.",
-            ),
-        )
+
+def _make(name: str, words: Mapping[str, Any]) -> LibraryMaterial:
+    constants = {key: value for key, value in words.items() if key not in {"law", "source", "note"}}
+    match words["law"]:
+        case "isotropic":
+            youngs, ratio = constants.pop("E"), constants.pop("nu")
+            return IsotropicSVK(name, youngs_modulus=youngs, poisson_ratio=ratio, **constants)
+        case "orthotropic":
+            constants.pop("ply_angle", None)  # of the case's lay-up, not of the material
+            strengths = {key.lower(): constants.pop(key, None) for key in _STRENGTHS}
+            strength = PlyStrength(**strengths) if strengths["xt"] else None
+            lower = {key.lower(): value for key, value in constants.items()}
+            return OrthotropicSVK(name, strength=strength, **lower)
+        case "mooney-rivlin":
+            return MooneyRivlin(name, **constants)
+        case "neo-hookean":
+            return NeoHookean(name, **constants)
+    raise MaterialError(f"material {name!r} of the library has an unknown law {words['law']!r}")
+
+
+def _read() -> dict[str, LibraryEntry]:
+    text = files("quietblade").joinpath("materials/library.toml").read_text(encoding="utf-8")
+    return {
+        name: LibraryEntry(_make(name, words), words["source"], words["note"])
+        for name, words in tomllib.loads(text).items()
     }
-)  # fmt: skip
+
+
+LIBRARY: Mapping[str, LibraryEntry] = MappingProxyType(_read())
 """Materials by name."""
 
 
-def find_material(name: str) -> IsotropicSVK | OrthotropicSVK | MooneyRivlin:
+def find_material(name: str) -> LibraryMaterial:
     """Return the library's material of this name.
 
     Raises

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 
 import ngsolve as ngs
 
-from quietblade.materials.protocols import require, require_positive
+from quietblade.materials.kinematics import volumetric_energy
+from quietblade.materials.protocols import require, require_nearly_incompressible
 
 
 @dataclass(frozen=True)
@@ -45,7 +46,6 @@ class MooneyRivlin:
     loss_factor: float = 0.0
 
     def __post_init__(self) -> None:
-        require_positive(self.name, density=self.density, bulk_modulus=self.bulk_modulus)
         for symbol, value in (("c10", self.c10), ("c01", self.c01)):
             require(
                 0.0 <= value < float("inf"),
@@ -54,20 +54,8 @@ class MooneyRivlin:
                 f"{symbol} = {value:g}",
                 "A negative constant loses stability at some strain; refit with both positive.",
             )
-        require_positive(self.name, shear_modulus=self.shear_modulus)
-        require(
-            self.bulk_modulus > 2 * self.shear_modulus / 3,
-            self.name,
-            "bulk_modulus > 2/3 shear modulus",
-            f"bulk_modulus = {self.bulk_modulus:g}, shear modulus = {self.shear_modulus:g}",
-            "Poisson's ratio would be negative; check the units of the constants.",
-        )
-        require(
-            0.0 <= self.loss_factor < float("inf"),
-            self.name,
-            "loss_factor >= 0",
-            f"loss_factor = {self.loss_factor:g}",
-            "With exp(+i omega t) a positive loss factor dissipates.",
+        require_nearly_incompressible(
+            self.name, self.density, self.shear_modulus, self.bulk_modulus, self.loss_factor
         )
 
     @property
@@ -79,8 +67,7 @@ class MooneyRivlin:
         self, F: ngs.CoefficientFunction, p: ngs.CoefficientFunction
     ) -> ngs.CoefficientFunction:
         """Mixed energy per undeformed volume [J/m3]; ``p`` [Pa] is positive in tension."""
-        volumetric = p * (ngs.Det(F) - 1) - p * p / (2 * self.bulk_modulus)
-        return self.isochoric_energy(F) + volumetric
+        return self.isochoric_energy(F) + volumetric_energy(F, p, self.bulk_modulus)
 
     def isochoric_energy(self, F: ngs.CoefficientFunction) -> ngs.CoefficientFunction:
         """``c10 (J^-2/3 I1 - 3) + c01 (J^-4/3 I2 - 3)`` [J/m3]."""

@@ -10,7 +10,8 @@ import numpy as np
 
 from quietblade.materials.axes import Axes, as_coefficient, check_axes
 from quietblade.materials.kinematics import green_lagrange
-from quietblade.materials.protocols import require, require_positive
+from quietblade.materials.protocols import require, require_loss_factor, require_positive
+from quietblade.materials.strength import PlyStrength
 from quietblade.typing import FloatArray
 
 
@@ -34,6 +35,10 @@ class OrthotropicSVK:
     axes : (3, 3) float array or CoefficientFunction
         Its columns are the unit material axes 1, 2, 3 in the blade frame (undeformed
         configuration); a CoefficientFunction may turn from place to place.
+    loss_factor : float
+        Loss factor eta of the complex stiffness ``C (1 + i eta)``, zero or positive.
+    strength : PlyStrength or None
+        For failure indices.
 
     Raises
     ------
@@ -53,6 +58,8 @@ class OrthotropicSVK:
     nu23: float
     nu13: float
     axes: Axes = field(default_factory=lambda: np.eye(3))
+    loss_factor: float = 0.0
+    strength: PlyStrength | None = None
 
     def __post_init__(self) -> None:
         require_positive(
@@ -79,6 +86,7 @@ class OrthotropicSVK:
             f"nu13 = {self.nu13:g}",
             "The three Poisson's ratios together are too large.",
         )
+        require_loss_factor(self.name, self.loss_factor)
         check_axes(self.name, self.axes)
 
     @property
@@ -92,6 +100,13 @@ class OrthotropicSVK:
         for (i, j), ratio in self._ratios.items():
             S[i - 1, j - 1] = S[j - 1, i - 1] = -ratio * S[i - 1, i - 1]
         return S
+
+    @property
+    def stiffness(self) -> FloatArray:
+        """Stiffness (6, 6) [Pa] in the material axes, for strains 11, 22, 33, 23, 13, 12."""
+        C = np.diag([0.0, 0.0, 0.0, self.g23, self.g13, self.g12])
+        C[:3, :3] = np.linalg.inv(self.compliance)
+        return C
 
     def oriented(self, axes: Axes) -> "OrthotropicSVK":
         """Return the same material with other axes."""

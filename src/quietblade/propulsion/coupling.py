@@ -1,62 +1,54 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-r"""Fixed point of flow and structure: the propulsion step (theory: S1-30).
+r"""Flow and structure in equilibrium: the propulsion step (theory: S1-30, S1-90).
 
 The paper's iteration is ``u^0 = 0, p^k = F(u^{k-1}), u^k = S(p^k)``, ended when
 ``|u^k - u^{k-1}| / |u^{k-1}|`` falls below the tolerance.  Its first pass is the *chained*
-computation: the load of the rigid blade, applied once.
+computation: the load of the rigid blade, applied once. It is here by the name "fixed-point";
+"aitken" and "anderson" accelerate it, and "newton", the default, updates the load in every
+correction of the structure.
 """
 
-from dataclasses import dataclass
-from time import perf_counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import get_args
 
 import numpy as np
 
 from quietblade.errors import Notice
-from quietblade.flow.inflow import BladeFlow, Inflow, strip_loads
-from quietblade.propulsion.newton import NewtonStep
-from quietblade.propulsion.structure import EquilibriumError, Structure, StructureState
+from quietblade.flow.inflow import BladeFlow, Inflow
+from quietblade.propulsion import acceleration
+from quietblade.propulsion.coupling_problem import CoupledBlade, CouplingStep, Limits, Method
+from quietblade.propulsion.coupling_ramp import Ramp
+from quietblade.propulsion.divergence import Kind, classify, divergence_pressure, divergence_ratio
+from quietblade.propulsion.structure import Structure, StructureState
 from quietblade.propulsion.transfer import LoadTransfer, SurfacePressure
 from quietblade.typing import FloatArray, Progress, silent
 
-_STAGE = "flow and structure"
+__all__ = ["CouplingStep", "Method", "StaticState", "Stop", "solve_static"]
 
+Stop = acceleration.Stop
 
-@dataclass(frozen=True)
-class CouplingStep:
-    """One pass of the fixed point.
+# Divergence pressure over dynamic pressure below which a notice is given.
+_NEAR = 1.5
 
-    Attributes
-    ----------
-    iteration : int
-        k, from 1.
-    change : float
-        ``|u^k - u^{k-1}| / |u^{k-1}|`` over the nodes; infinite in the first pass.
-    rate : float
-        Change over the previous one, an estimate of the contraction; nan in the first two passes.
-    tip : (3,) float array
-        Displacement of the tip section's mid-chord point [m].
-    lift : float
-        Lift of F(u^{k-1}), the load of this pass [N].
-    newton : tuple of NewtonStep
-        Convergence table of the structural solution.
-    seconds : float
-        Wall time of the pass.
-    """
+_WHERE = "flow and structure"
 
-    iteration: int
-    change: float
-    rate: float
-    tip: FloatArray
-    lift: float
-    newton: tuple[NewtonStep, ...]
-    seconds: float
+_MEANING: dict[Kind, str] = {
+    "wash-out": "the lift falls with bending and twist so much that a plain fixed point would "
+    "diverge; this is no static divergence, and the equilibrium is sound",
+    "divergence": "the equilibrium is unstable: the lift that deformation adds outruns the "
+    "stiffness (static divergence)",
+    "post-divergence": "the blade has diverged: the undeformed blade is beyond its divergence "
+    "pressure, and only softening lift or stiffening deformation holds it",
+}
 
-    def __str__(self) -> str:
-        return (
-            f"iteration {self.iteration}: change {self.change:.2e}, rate {self.rate:.2f}, "
-            f"tip y {self.tip[1] * 1e3:.2f} mm, lift {self.lift:.1f} N, "
-            f"{len(self.newton)} Newton iterations"
-        )
+_REMEDY: dict[Kind, str] = {
+    "steady": "Allow more passes",
+    "unresolved": "Allow more passes, ramp the dynamic pressure, or use the method 'anderson'",
+    "wash-out": "Use the method 'newton' or 'anderson'; the equilibrium exists",
+    "divergence": "Lower the speed, stiffen the blade in torsion, or move the elastic axis forward",
+    "post-divergence": "Lower the speed or stiffen the blade; check the sections for stall",
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,33 +63,86 @@ class StaticState:
         u1 at the nodes of the mesh [m].
     surface : SurfacePressure
         p1 on the wetted surface, with what the transfer conserves.
-    rigid, chained, coupled : BladeFlow
-        The flow about the undeformed blade, about the blade under the rigid blade's load, and
-        about the blade in equilibrium.
+    rigid, coupled : BladeFlow
+        The flow about the undeformed blade, and about the blade in equilibrium.
+    chained_flow : BladeFlow or None
+        The flow about the blade under the rigid blade's load, if it was asked for.
     history : tuple of CouplingStep
-        Passes of the fixed point.
+        Passes of the coupling.
     tolerance : float
-        The wanted relative change.
+        The wanted relative change or error.
     converged : bool
-        Whether it was reached.
+        Whether it was reached, at the whole dynamic pressure.
     notices : tuple of Notice
+    method, stop : str
+        As given to `solve_static`.
+    fraction : float
+        Fraction of the dynamic pressure that the state is for: below 1 if the rest of the way to
+        1 has failed, so that this is the last good state.
+    kind : str
+        What the coupling is like, see `quietblade.propulsion.divergence.classify`.
+    flows : float
+        Solutions of the flow, counted in those of all sections.
     """
 
     structure: StructureState
     displacement: FloatArray
     surface: SurfacePressure
     rigid: BladeFlow
-    chained: BladeFlow
+    chained_flow: BladeFlow | None
     coupled: BladeFlow
     history: tuple[CouplingStep, ...]
     tolerance: float
     converged: bool
     notices: tuple[Notice, ...] = ()
+    method: str = "fixed-point"
+    stop: str = "change"
+    fraction: float = 1.0
+    kind: Kind = "steady"
+    flows: float = 0.0
+
+    @property
+    def chained(self) -> BladeFlow:
+        """The flow about the blade under the rigid blade's load."""
+        if self.chained_flow is None:
+            raise ValueError("the chained computation was left out; use solve_static(chained=True)")
+        return self.chained_flow
 
     @property
     def tip_displacement(self) -> FloatArray:
         """Displacement of the mid-chord point of the tip section, (3,) [m]."""
-        return self.history[-1].tip
+        sections = self.coupled.sections.reference[-1] - self.rigid.sections.reference[-1]
+        return np.asarray(sections)
+
+    @property
+    def eigenvalue(self) -> complex:
+        """Dominant eigenvalue of a pass of flow and structure, as the history shows it."""
+        known = [s.eigenvalue for s in self.history if np.isfinite(s.eigenvalue)]
+        return known[-1] if known else complex(np.nan)
+
+    @property
+    def rate(self) -> float:
+        """Contraction rate of the plain fixed point at the solution: the eigenvalue's size."""
+        return abs(self.eigenvalue)
+
+    @property
+    def error(self) -> float:
+        """Estimated distance to the coupled solution, relative to the displacement."""
+        return self.history[-1].error
+
+    @property
+    def factorizations(self) -> int:
+        """Tangents factorised."""
+        return sum(step.factorizations for step in self.history)
+
+    @property
+    def divergence(self) -> float:
+        """Estimated divergence pressure over the dynamic pressure; infinite if none is in sight.
+
+        From the dominant eigenvalue at the last fraction; `divergence_pressure` computes it
+        better.
+        """
+        return divergence_ratio(np.array([self.eigenvalue]), self.history[-1].fraction)
 
 
 def solve_static(
@@ -105,12 +150,18 @@ def solve_static(
     transfer: LoadTransfer,
     inflow: Inflow,
     *,
+    method: Method = "newton",
     tolerance: float = 1e-5,
+    stop: Stop | None = None,
     max_iterations: int = 40,
     newton_tolerance: float = 1e-8,
+    depth: int = 5,
+    ramp: Sequence[float] = (1.0,),
+    chained: bool = True,
+    extra: tuple[FloatArray, FloatArray] | None = None,
     progress: Progress = silent,
 ) -> StaticState:
-    """Find the deformed blade by the paper's fixed point.
+    """Find the deformed blade under its own lift.
 
     Parameters
     ----------
@@ -120,12 +171,29 @@ def solve_static(
         Displacement to the sections, pressure to the structure.
     inflow : Inflow
         With the panel method, the solver F.
+    method : {"newton", "fixed-point", "aitken", "anderson"}
+        "fixed-point" is the paper's.
     tolerance : float
-        Largest relative change of the displacement in the last pass.
+        Of the displacement, relative.
+    stop : {"error", "change"} or None
+        What the tolerance is for: the estimated true error, or the change of the last pass as in
+        the paper. Default: the change for "fixed-point", otherwise the error.
     max_iterations : int
-        Largest number of passes; beyond it the state is returned, marked as not converged.
+        Largest number of passes at a fraction of the pressure; beyond it the state is returned,
+        marked as not converged.
     newton_tolerance : float
-        Of each structural solution, see `Structure.solve`.
+        Of the structural solutions, see `Structure.solve`.
+    depth : int
+        Differences of passes that accelerations and estimates remember.
+    ramp : sequence of float
+        Increasing fractions of the dynamic pressure, ending with 1. The method "newton" adds more
+        where it fails.
+    chained : bool
+        Whether to compute the flow about the blade under the rigid blade's load. With "newton"
+        this costs an uncoupled solution, less what the coupled one gains from its start.
+    extra : tuple of arrays or None
+        Pressure at the nodes [Pa] and dead load on the displacement unknowns [N] beside the
+        flow's; they do not change along the ramp.
     progress : callable
 
     Returns
@@ -135,89 +203,88 @@ def solve_static(
     Raises
     ------
     EquilibriumError
-        The structure has no equilibrium under the first pass's load.
+        No equilibrium was found at any fraction of the load.
     GeometryError
-        A deformed section cannot be solved by the flow.
+        Not even the undeformed sections can be solved by the flow.
+    ValueError
+        Unknown method, or a ramp that does not increase from above 0 to 1.
     """
-
-    def inner(_: str, __: float | None, message: str) -> None:
-        progress(_STAGE, None, message)  # a fraction of a load step says nothing of the whole
-
-    displacement = np.zeros_like(structure.basis.points)
-    state, failure = structure.rest(), None
-    flows = [_flow(transfer, inflow, displacement)]
-    history: list[CouplingStep] = []
-    for iteration in range(1, max_iterations + 1):
-        start = perf_counter()
-        flow = flows[-1]
-        surface = transfer.pressure(flow.sections, flow.loads, displacement)
-        try:
-            state = structure.solve(
-                surface.values, state, tolerance=newton_tolerance, progress=inner
-            )
-        except EquilibriumError as error:
-            if iteration == 1:
-                raise
-            failure = error  # the last good state is the result, marked as not converged
-            break
-        moved = structure.values(state)
-        flows.append(_flow(transfer, inflow, moved))
-        change = _relative_change(moved, displacement)
-        displacement = moved
-        history.append(
-            CouplingStep(
-                iteration=iteration,
-                change=change,
-                rate=change / history[-1].change if iteration > 2 else np.nan,
-                tip=flows[-1].sections.reference[-1] - flows[0].sections.reference[-1],
-                lift=flow.total.lift,
-                newton=state.newton,
-                seconds=perf_counter() - start,
-            )
-        )
-        progress(_STAGE, None, str(history[-1]))
-        if change < tolerance:
-            break
-    converged = failure is None and history[-1].change < tolerance
-    return StaticState(
-        structure=state,
-        displacement=displacement,
-        surface=surface,
-        rigid=flows[0],
-        chained=flows[1],
-        coupled=flows[-1],
-        history=tuple(history),
-        tolerance=tolerance,
-        converged=converged,
-        notices=() if converged else (_not_converged(history, tolerance, failure),),
-    )
-
-
-def _flow(transfer: LoadTransfer, inflow: Inflow, displacement: FloatArray) -> BladeFlow:
-    return strip_loads(transfer.displaced_sections(displacement), inflow)
-
-
-def _relative_change(new: FloatArray, old: FloatArray) -> float:
-    size = float(np.linalg.norm(old))
-    return float(np.linalg.norm(new - old)) / size if size > 0.0 else np.inf
-
-
-def _not_converged(
-    history: list[CouplingStep], tolerance: float, failure: EquilibriumError | None
-) -> Notice:
-    last = history[-1]
-    why = f" ({failure})" if failure is not None else ""
-    grows = last.rate > 1.0
-    remedy = (
-        "The change grows from pass to pass: the blade diverges, or the plain fixed point does. "
-        "Lower the speed, or stiffen the blade"
-        if grows
-        else "Allow more passes"
-    )
-    return Notice(
-        "flow and structure",
-        f"not converged after {last.iteration} passes{why}; the last good state is kept",
-        last.change,
+    _check(method, ramp)
+    problem = CoupledBlade(structure, transfer, inflow, extra)
+    rigid = problem.flow(np.zeros_like(structure.basis.points))
+    limits = Limits(
         tolerance,
-        remedy,
+        stop or ("change" if method == "fixed-point" else "error"),
+        max_iterations,
+        newton_tolerance,
+        depth,
     )
+    way = Ramp(problem, method, limits, progress)
+    if chained and (method == "newton" or len(ramp) > 1):
+        way.chain(rigid, start_there=len(ramp) == 1)
+    way.climb(ramp)
+    good = way.good
+    kind = _confirmed(classify(tuple(way.history), way.converged), way.converged, problem)
+    state = StaticState(
+        structure=good.state,
+        displacement=good.displacement,
+        surface=good.pressed,
+        rigid=rigid,
+        chained_flow=way.chained_flow if chained else None,
+        coupled=problem.flow(good.displacement),
+        history=tuple(way.history),
+        tolerance=tolerance,
+        converged=way.converged,
+        method=method,
+        stop=limits.stop,
+        fraction=way.reached,
+        kind=kind,
+        flows=problem.solved_sections / len(transfer.s),
+    )
+    return replace(state, notices=(*way.notices, *good.state.notices, *_notices(state, way.reason)))
+
+
+def _check(method: str, ramp: Sequence[float]) -> None:
+    if method not in get_args(Method):
+        raise ValueError(f"method {method!r}: use one of {', '.join(get_args(Method))}")
+    fractions = np.array(ramp, dtype=np.float64)
+    if not len(fractions) or np.any(np.diff([0.0, *fractions]) <= 0.0) or fractions[-1] != 1.0:
+        raise ValueError(
+            f"ramp {tuple(ramp)}: fractions of the pressure increase from above 0 to 1"
+        )
+
+
+def _confirmed(kind: Kind, converged: bool, problem: CoupledBlade) -> Kind:
+    """Judge by the undeformed blade what steps that were large or led nowhere cannot tell."""
+    if converged and kind != "post-divergence":
+        return kind
+    at_rest = divergence_pressure(problem.structure, problem.transfer, problem.inflow)
+    if converged:
+        return kind if at_rest.pressure_ratio <= 1.0 else "steady"
+    if at_rest.pressure_ratio <= 1.0:
+        return "divergence"
+    return "wash-out" if at_rest.rate >= 1.0 else "unresolved"
+
+
+def _notices(state: StaticState, reason: str) -> Iterator[Notice]:
+    last = state.history[-1]
+    if not state.converged:
+        kept = f"the last good state, at {state.fraction:.3g} of the dynamic pressure, is kept"
+        value = last.change if state.stop == "change" else last.error
+        yield Notice(
+            _WHERE,
+            f"not converged after {last.iteration} passes ({reason}); {kept}",
+            value,
+            state.tolerance,
+            _REMEDY[state.kind],
+        )
+    elif state.kind != "steady":
+        yield Notice(_WHERE, _MEANING[state.kind], state.rate, 1.0, _REMEDY[state.kind])
+    elif state.divergence < _NEAR:
+        yield Notice(
+            _WHERE,
+            "the blade is close to static divergence: divergence pressure over dynamic pressure",
+            state.divergence,
+            _NEAR,
+            _REMEDY["divergence"],
+        )

@@ -15,7 +15,7 @@ from scipy.sparse import csr_matrix
 
 from quietblade.errors import MaterialError, MeshError
 from quietblade.linalg import default_threads
-from quietblade.materials import Material, MixedMaterial, green_lagrange
+from quietblade.materials import AnisotropicSVK, Material, MixedMaterial, green_lagrange
 from quietblade.mesh.assembly import csr_of
 from quietblade.mesh.nodal import NodalBasis
 from quietblade.propulsion.loading import Loading
@@ -111,6 +111,17 @@ class StructuralForms:
         """Regions of mixed materials."""
         return self.fem.Materials("|".join(self.mixed))
 
+    def boundary(self, pattern: str) -> ngs.Region:
+        """Boundaries of the mesh that match a name pattern; at least one does.
+
+        Raises
+        ------
+        MeshError
+            If none does.
+        """
+        _check_boundary(self.fem, pattern)
+        return self.fem.Boundaries(pattern)
+
     def gradient(self, u: ngs.CoefficientFunction) -> ngs.CoefficientFunction:
         """Deformation gradient F of a displacement."""
         return ngs.Id(3) + ngs.Grad(u)
@@ -132,7 +143,7 @@ class StructuralForms:
         """Strain energy of the regions that the displacement alone describes."""
         u, _ = self.trial()
         F = self.gradient(u)
-        return [_variation(m.energy(F), region) for region, m in self.elastic.items()]
+        return [_variation(m.energy(F), region, _extra(m)) for region, m in self.elastic.items()]
 
     def newton_elastic_terms(self, correction: ngs.GridFunction) -> Terms:
         """Terms whose derivative is the elastic tangent with independent stresses.
@@ -147,7 +158,10 @@ class StructuralForms:
         u, _ = self.trial()
         D = ngs.Grad(correction)
         E = green_lagrange(self.gradient(u)) - 0.5 * D.trans * D
-        return [_variation(m.energy_of_strain(E), region) for region, m in self.elastic.items()]
+        return [
+            _variation(m.energy_of_strain(E), region, _extra(m))
+            for region, m in self.elastic.items()
+        ]
 
     def mixed_terms(self) -> Terms:
         """Energy of the film, in displacement and pressure."""
@@ -155,18 +169,45 @@ class StructuralForms:
         F = self.gradient(u)
         return [_variation(m.energy(F, p), region) for region, m in self.mixed.items()]
 
-    def isochoric_terms(self, base: ngs.GridFunction) -> Terms:
+    def material_terms(self, region: str, base: ngs.GridFunction) -> Terms:
+        """Elastic energy of a region at the strain ``E0 + sym(F0^T grad u)``, affine in u.
+
+        Its second variation at u = 0 is ``dE : C : dE``, without the initial-stress part.
+        """
+        u, _ = self.trial()
+        F0 = self.gradient(base)
+        change = F0.trans * ngs.Grad(u)
+        E = green_lagrange(F0) + 0.5 * (change + change.trans)
+        return [_variation(self.elastic[region].energy_of_strain(E), region)]
+
+    def isochoric_energy_terms(self) -> Terms:
+        """Isochoric energy of the film, in the displacement alone."""
+        u, _ = self.trial()
+        F = self.gradient(u)
+        return [_variation(m.isochoric_energy(F), region) for region, m in self.mixed.items()]
+
+    def film_pressure_terms(self, pressure: ngs.GridFunction) -> Terms:
+        """Work ``int p J`` of a given film pressure on the change of volume."""
+        u, _ = self.trial()
+        J = ngs.Det(self.gradient(u))
+        return [_variation(pressure * J, region) for region in self.mixed]
+
+    def isochoric_terms(
+        self, base: ngs.GridFunction, weight: ngs.CoefficientFunction | None = None
+    ) -> Terms:
         """Isochoric energy of the film at the strain ``E0 + sym(F0^T grad u)``, affine in u.
 
-        Its second variation at u = 0 is ``dE : C_iso : dE``, without the initial-stress part.
+        Its second variation at u = 0 is ``dE : C_iso : dE``, without the initial-stress part.  A
+        weight, a function of place, multiplies the energy.
         """
         u, _ = self.trial()
         F0 = self.gradient(base)
         change = F0.trans * ngs.Grad(u)
         C = F0.trans * F0 + change + change.trans
-        return [
-            _variation(m.isochoric_energy_of_metric(C), region) for region, m in self.mixed.items()
-        ]
+        energies = {r: m.isochoric_energy_of_metric(C) for r, m in self.mixed.items()}
+        if weight is not None:
+            energies = {region: weight * energy for region, energy in energies.items()}
+        return [_variation(energy, region) for region, energy in energies.items()]
 
     def pressure_terms(self) -> Terms:
         """Virtual work ``int p cof(F) N . v dS0`` of the follower pressure (on the left side)."""
@@ -211,6 +252,14 @@ class StructuralForms:
         with parallel():
             form.AssembleLinearization(self.vector(at))
         return csr_of(form)
+
+    def apply(self, form: ngs.BilinearForm, at: FloatArray) -> FloatArray:
+        """Return a form (nonlinear or not) at a vector, (ndof,), full numbering."""
+        vector = self.vector(at)
+        result = vector.CreateVector()
+        with parallel():
+            form.Apply(vector, result)
+        return np.array(result)
 
     def vector(self, values: FloatArray) -> ngs.BaseVector:
         """NGSolve vector of full-numbered values."""
@@ -265,8 +314,15 @@ def parallel() -> AbstractContextManager[object]:
     return ngs.TaskManager() if default_threads() > 1 else nullcontext()
 
 
-def _variation(energy: ngs.CoefficientFunction, region: str) -> ngs.CoefficientFunction:
-    return ngs.Variation(energy.Compile() * ngs.dx(region))
+def _variation(
+    energy: ngs.CoefficientFunction, region: str, extra: int = 0
+) -> ngs.CoefficientFunction:
+    return ngs.Variation(energy.Compile() * ngs.dx(region, bonus_intorder=extra))
+
+
+def _extra(material: Material) -> int:
+    """Degrees of quadrature beyond those of a homogeneous solid: plies vary inside cells."""
+    return material.extra_order if isinstance(material, AnisotropicSVK) else 0
 
 
 def _dofs(space: ngs.FESpace, region: ngs.Region) -> BoolArray:

@@ -3,8 +3,8 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import isnan
-from typing import Protocol
+from math import isnan, nan
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 
@@ -27,6 +27,29 @@ Solve = Callable[[FloatArray], FloatArray]
 
 
 @dataclass(frozen=True)
+class Tolerance:
+    """When an equilibrium is good enough: residual and last increment both have to be small.
+
+    Attributes
+    ----------
+    residual : float
+        Largest residual relative to the forces (in the film also the volume defect).
+    increment : float
+        Largest increment relative to the displacement.
+    force : float
+        Largest residual [N] (Euclidean norm over the displacement unknowns) that is small however
+        small the forces are; zero if only the relative size counts.
+    motion : float
+        Likewise the largest increment of a vertex [m].
+    """
+
+    residual: float = 1e-6
+    increment: float = 1e-6
+    force: float = 0.0
+    motion: float = 0.0
+
+
+@dataclass(frozen=True)
 class NewtonStep:
     """A line of the convergence table.
 
@@ -42,6 +65,12 @@ class NewtonStep:
         Correction relative to the displacement; NaN in a line that only checks.
     new_tangent : bool
         Whether the tangent was assembled and factorised for it.
+    force : float
+        Residual [N]; NaN if the problem does not know it.
+    motion : float
+        Largest correction of a vertex [m]; NaN likewise.
+    energy : float
+        Work of the residual on the correction [J].
     """
 
     fraction: float
@@ -49,6 +78,9 @@ class NewtonStep:
     residual: float
     increment: float
     new_tangent: bool
+    force: float = nan
+    motion: float = nan
+    energy: float = nan
 
     def __str__(self) -> str:
         mark = "*" if self.new_tangent else " "
@@ -56,7 +88,14 @@ class NewtonStep:
             f"load {self.fraction:7.4f}  iteration {self.iteration:2d}{mark} "
             f"residual {self.residual:8.2e}"
         )
-        return line if isnan(self.increment) else f"{line}  increment {self.increment:8.2e}"
+        if not isnan(self.force):
+            line += f" {self.force:8.2e} N"
+        if isnan(self.increment):
+            return line
+        line += f"  increment {self.increment:8.2e}"
+        if not isnan(self.motion):
+            line += f" {self.motion:8.2e} m"
+        return f"{line}  energy {self.energy:8.2e} J"
 
 
 class Problem(Protocol):
@@ -70,6 +109,17 @@ class Problem(Protocol):
 
     def correct(self, x: FloatArray, step: FloatArray) -> tuple[FloatArray, float]:
         """Corrected x, and the size of the correction relative to the displacement."""
+
+
+@runtime_checkable
+class Measured(Protocol):
+    """A problem that also knows sizes in units."""
+
+    def force_size(self, residual: FloatArray) -> float:
+        """Size of a residual of the free unknowns [N]."""
+
+    def motion_size(self, step: FloatArray) -> float:
+        """Largest displacement of a vertex in a step of the free unknowns [m]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,20 +154,24 @@ def solve_newton(
     *,
     residual_tolerance: float,
     increment_tolerance: float,
+    force_tolerance: float = 0.0,
+    motion_tolerance: float = 0.0,
     solve: Solve | None = None,
 ) -> Outcome:
-    """Iterate until the relative residual and the last relative increment are small.
+    """Iterate until the residual and the last increment are small.
 
     Parameters
     ----------
     problem : Problem
-        Equilibrium at the load.
+        Equilibrium at the load; if it is also `Measured`, the table has sizes in units.
     x : (ndof,) float array
         First guess.
     fraction : float
         Fraction of the load path, for the table.
     residual_tolerance, increment_tolerance : float
         Largest relative residual, and largest relative increment before it.
+    force_tolerance, motion_tolerance : float
+        Residual [N] and increment [m] that count as small whatever their relative sizes.
     solve : callable or None
         Solver of a tangent near x, if there is one, for the first correction.
 
@@ -127,15 +181,18 @@ def solve_newton(
         Not converged if a residual is not finite, large increments do not shrink, a linear system
         cannot be solved, or the iterations are used up.
     """
+    units = problem if isinstance(problem, Measured) else None
     steps: list[NewtonStep] = []
-    last = before = np.inf
+    last = before = motion = np.inf
     for iteration in range(MAX_ITERATIONS + 1):
         force, residual = problem.residual(x)
+        newtons = nan if units is None else units.force_size(force)
         settled = residual == 0.0 or (
-            residual <= residual_tolerance and last <= increment_tolerance
+            (residual <= residual_tolerance or newtons <= force_tolerance)
+            and (last <= increment_tolerance or motion <= motion_tolerance)
         )
         if settled or not np.isfinite(residual) or iteration == MAX_ITERATIONS:
-            steps.append(NewtonStep(fraction, iteration, residual, np.nan, False))
+            steps.append(NewtonStep(fraction, iteration, residual, nan, False, newtons))
             if settled:
                 return Outcome(x, True, tuple(steps), solve)
             reason = "the iterations are used up"
@@ -149,9 +206,16 @@ def solve_newton(
                 solve = problem.tangent(x)
             step = solve(force)
         except SolverError as error:
+            steps.append(NewtonStep(fraction, iteration, residual, nan, new_tangent, newtons))
             return Outcome(x, False, tuple(steps), reason=str(error))
         x, increment = problem.correct(x, step)
-        steps.append(NewtonStep(fraction, iteration, residual, increment, new_tangent))
+        motion = nan if units is None else units.motion_size(step)
+        energy = float(abs(force @ step))
+        steps.append(
+            NewtonStep(
+                fraction, iteration, residual, increment, new_tangent, newtons, motion, energy
+            )
+        )
         before, last = last, increment
         if not np.isfinite(last) or last > max(before, _MUST_SHRINK_ABOVE):
             break

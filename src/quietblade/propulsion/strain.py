@@ -9,8 +9,10 @@ import numpy as np
 
 from quietblade.materials.axes import Axes, as_coefficient
 from quietblade.materials.kinematics import green_lagrange
-from quietblade.propulsion.forms import parallel
+from quietblade.materials.voigt import PAIRS
+from quietblade.propulsion.samples import take_samples
 from quietblade.propulsion.structure import Structure, StructureState
+from quietblade.propulsion.tensors import green_lagrange_strain, in_axes
 from quietblade.typing import FloatArray
 
 Places = Literal["quadrature", "nodes"]
@@ -137,10 +139,7 @@ def green_lagrange_field(
 def nodal_strain(
     structure: Structure, state: StructureState, axes: Axes | None = None, *, region: str
 ) -> FloatArray:
-    """Green-Lagrange strain at the nodes of a region, for pictures and files.
-
-    The strain is projected in each cell on second-order polynomials, and averaged where cells
-    meet; regions do not mix.
+    """Green-Lagrange strain at the nodes of a region, for pictures and files (theory: S1-63).
 
     Returns
     -------
@@ -148,16 +147,12 @@ def nodal_strain(
         E11, E22, E33, E23, E13, E12 in the axes (default: x, y, z of the blade frame) at the
         nodes of `Structure.basis`; NaN outside the region.
     """
-    forms = structure.forms
-    E = green_lagrange_field(structure, state, axes)
-    space = ngs.H1(forms.fem, order=2)
+    samples = take_samples(structure, state, region, np.eye(3) if axes is None else axes)
+    assert samples.axes is not None
+    strain = in_axes(green_lagrange_strain(samples.gradient), samples.axes)
+    i, j = np.array(PAIRS).T
     values = np.full((len(structure.basis.points), 6), np.nan)
-    nodes = structure.basis.nodes_of(region)
-    for column, (i, j) in enumerate(((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))):
-        field = ngs.GridFunction(space)
-        with parallel():
-            field.Set(E[i, j], definedon=forms.fem.Materials(region))
-        values[nodes, column] = structure.basis.to_values(np.array(field.vec))[nodes]
+    values[samples.nodes] = samples.at_nodes(strain[:, i, j])
     return values
 
 

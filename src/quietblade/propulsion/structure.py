@@ -10,32 +10,28 @@ where ``F = 1 + grad u``, all over the undeformed blade (theory: S1-1).
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Literal
 
 import ngsolve as ngs
 import numpy as np
 
-from quietblade.errors import ConvergenceError
+from quietblade.errors import ConvergenceError, Notice
 from quietblade.linalg import SparseSolver
 from quietblade.materials import Material
 from quietblade.mesh.nodal import NodalBasis
-from quietblade.propulsion.forms import StructuralForms, Terms, parallel
-from quietblade.propulsion.linear import FreeSystem, newton_solver
+from quietblade.propulsion.contact import SurfaceCrossing
+from quietblade.propulsion.equilibrium import Equilibrium
+from quietblade.propulsion.forms import StructuralForms, parallel
+from quietblade.propulsion.linear import newton_solver
 from quietblade.propulsion.loading import Loading, Spin
-from quietblade.propulsion.newton import NewtonStep, Solve, solve_newton
+from quietblade.propulsion.newton import NewtonStep, Solve, Tolerance
+from quietblade.propulsion.stepping import SMALLEST_LOAD_STEP, LoadStep, Path, follow
+from quietblade.propulsion.supports import ElasticSupport, Support, assemble_support
 from quietblade.typing import FloatArray, Progress, silent
 
-_SMALLEST_LOAD_STEP = 1 / 256
-
-# Ends of intermediate load steps only have to be good first guesses.
-_WAYPOINT = 1e-2
-
-# Forces below this multiple of those that rounding makes at rest are none.
-_ROUNDING_MARGIN = 1e3
-
-# Forces and displacements below this share of those at the start count as this share.
-_NOTHING = 1e-3
+OnFailure = Literal["raise", "return"]
 
 _STAGE = "structure"
 
@@ -56,7 +52,13 @@ class StructureState:
     newton : tuple of NewtonStep
         Convergence table.
     converged : bool
-        Whether the last line of the table meets the tolerance.
+        Whether the wanted load was reached, to the tolerance, in a state that can be.
+    fraction : float
+        Fraction of the way from the start's load to the wanted one at which this equilibrium is.
+    steps : tuple of LoadStep
+        The load steps that were tried, with the stability of each.
+    notices : tuple of Notice
+        What the user should know: not converged, unstable, surfaces that cross.
     """
 
     displacement: FloatArray
@@ -64,6 +66,19 @@ class StructureState:
     loading: Loading
     newton: tuple[NewtonStep, ...] = ()
     converged: bool = True
+    fraction: float = 1.0
+    steps: tuple[LoadStep, ...] = ()
+    notices: tuple[Notice, ...] = ()
+
+    @property
+    def unstable_from(self) -> float | None:
+        """Least fraction of the load at which an equilibrium on the way was unstable, if any.
+
+        Where the tangent has negative pivots there, a limit or bifurcation point has been passed.
+        """
+        return min(
+            (s.fraction for s in self.steps if s.converged and s.negative_pivots), default=None
+        )
 
     @property
     def unknowns(self) -> FloatArray:
@@ -108,7 +123,10 @@ class Structure:
     basis : NodalBasis or None
         Nodal basis of the mesh, if there is one already.
     solver : SparseSolver or None
-        Solver of unsymmetric linear systems; default `newton_solver()`.
+        Solver of the linear systems, which are symmetric but for the follower pressure; default
+        `newton_solver()`.
+    support : Support or None
+        Elastic support of a boundary, which `clamped` then must not name.
     """
 
     def __init__(
@@ -122,12 +140,14 @@ class Structure:
         guided: Mapping[str, str] | None = None,
         basis: NodalBasis | None = None,
         solver: SparseSolver | None = None,
+        support: Support | None = None,
     ) -> None:
         self.forms = StructuralForms(
             fem, materials, clamped=clamped, wetted=wetted, guided=guided, basis=basis
         )
         self.spin = spin
         self.solver = newton_solver() if solver is None else solver
+        self.support = support
         self._kept_state: StructureState | None = None
         self._kept_tangent: Solve | None = None
 
@@ -155,7 +175,8 @@ class Structure:
         start: StructureState | None = None,
         *,
         dead_load: FloatArray | None = None,
-        tolerance: float = 1e-6,
+        tolerance: float | Tolerance = 1e-6,
+        on_failure: OnFailure = "raise",
         progress: Progress = silent,
     ) -> StructureState:
         """Find the equilibrium under a pressure, by load steps of automatic size.
@@ -173,9 +194,13 @@ class Structure:
             it is the last result, its tangent serves for the first correction.
         dead_load : (displacement unknowns,) float array or None
             Forces [N] of fixed direction, work-conjugate to the displacement unknowns.
-        tolerance : float
+        tolerance : float or Tolerance
             Largest relative residual (to the forces at all unknowns; in the film also the volume
-            defect relative to the film's volume), and largest relative last increment.
+            defect relative to the film's volume), and largest relative last increment; or both by
+            themselves, also in N and m.
+        on_failure : {"raise", "return"}
+            What to do if there is no equilibrium at the wanted load: raise, or return the last one
+            found on the way, with ``converged = False`` and a notice.
         progress : callable
             Called with the stage, the fraction of the load and the last line of the table.
 
@@ -186,37 +211,25 @@ class Structure:
         """
         begin = self.rest() if start is None else start
         target = self._loading(pressure, dead_load)
-        problem = self._equilibrium
-        problem.begin(begin.unknowns)
-        tangent = self._kept_tangent if start is not None and start is self._kept_state else None
-        x, done, width, table = begin.unknowns, 0.0, 1.0, list[NewtonStep]()
-        while done < 1.0:
-            fraction = min(1.0, done + width)
-            last = fraction == 1.0
-            problem.set_loading(begin.loading.towards(target, fraction))
-            outcome = solve_newton(
-                problem,
-                x,
-                fraction,
-                residual_tolerance=tolerance if last else np.inf,
-                increment_tolerance=tolerance if last else _WAYPOINT,
-                solve=tangent,
-            )
-            tangent = None
-            table += outcome.steps
-            progress(_STAGE, fraction if outcome.converged else done, str(table[-1]))
-            if outcome.converged:
-                x, done, width = outcome.x, fraction, 2 * width
-                continue
-            width /= 2
-            problem.forget()
-            if width < _SMALLEST_LOAD_STEP:
-                reached = begin.loading.towards(target, done)
-                state = self._state(x, reached, table, False)
-                raise self._failure(state, done, fraction, outcome.reason)
-        state = self._state(x, target, table, True)
-        self._check_volumes(state)
-        self._kept_state, self._kept_tangent = state, outcome.solve
+        wanted = tolerance if isinstance(tolerance, Tolerance) else Tolerance(tolerance, tolerance)
+        equations = self.equations
+        equations.begin(begin.unknowns)
+        path = follow(
+            equations,
+            begin.unknowns,
+            lambda fraction: equations.set_loading(begin.loading.towards(target, fraction)),
+            wanted,
+            solve=self._kept_tangent if start is not None and start is self._kept_state else None,
+            progress=progress,
+        )
+        state = self._state(path, begin.loading.towards(target, path.fraction))
+        failure = self._failure(state) if not path.converged else self._inverted(state)
+        if failure is not None:
+            self.forget()
+            if on_failure == "raise":
+                raise failure
+            return failure.state
+        self._kept_state, self._kept_tangent = state, path.solve
         return state
 
     def forget(self) -> None:
@@ -225,15 +238,20 @@ class Structure:
 
     def internal_force(self, state: StructureState) -> FloatArray:
         """Gradient of the strain energy, (ndof,) [N and m3], at every unknown."""
-        return self._equilibrium.internal(state.unknowns)
+        return self.equations.internal(state.unknowns)
 
     def external_force(self, state: StructureState) -> FloatArray:
         """Pressure, centrifugal and dead forces, (ndof,) [N], at every unknown.
 
-        At free unknowns they balance `internal_force`; elsewhere the difference is the reaction.
+        At free unknowns they balance `internal_force`; elsewhere, and at elastic supports, the
+        difference is the reaction.
         """
-        self._equilibrium.set_loading(state.loading)
-        return self._equilibrium.external(state.unknowns)
+        self.equations.set_loading(state.loading)
+        return self.equations.external(state.unknowns)
+
+    def support_force(self, state: StructureState) -> FloatArray:
+        """Return the elastic support's forces on the structure, (ndof,) [N], at every unknown."""
+        return self.equations.supporting(state.unknowns)
 
     def _loading(self, pressure: FloatArray, dead_load: FloatArray | None) -> Loading:
         n = self.forms.n_displacement
@@ -246,127 +264,99 @@ class Structure:
                 raise ValueError(f"{name} has to be {size} finite numbers, got shape {array.shape}")
         return Loading(np.asarray(pressure, dtype=float), dead, self.spin.omega**2)
 
-    def _state(
-        self, x: FloatArray, loading: Loading, table: list[NewtonStep], converged: bool
-    ) -> StructureState:
+    def _state(self, path: Path, loading: Loading) -> StructureState:
         n = self.forms.n_displacement
-        return StructureState(x[:n], x[n:], loading, tuple(table), converged)
+        state = StructureState(
+            path.x[:n], path.x[n:], loading, path.table, path.converged, path.fraction, path.steps
+        )
+        return replace(state, notices=(*self._instability(state), *self._crossing(state)))
 
-    def _failure(
-        self, state: StructureState, done: float, wanted: float, reason: str
-    ) -> EquilibriumError:
-        largest = float(np.linalg.norm(self.values(state), axis=1).max())
-        return EquilibriumError(
-            f"no static equilibrium between {done:.4g} and {wanted:.4g} of the load: {reason}, "
-            f"however small the load step (1/{1 / _SMALLEST_LOAD_STEP:.0f} of the way). The last "
-            f"equilibrium has a largest displacement of {largest:.4g} m. Either the structure "
-            "diverges or buckles there (lower the load, or stiffen it), or cells are too poor "
-            "(refine the mesh).",
-            state,
-            done,
+    def _instability(self, state: StructureState) -> tuple[Notice, ...]:
+        fraction = state.unstable_from
+        if fraction is None:
+            return ()
+        return (
+            Notice(
+                _STAGE,
+                f"the equilibrium is unstable from {fraction:.4g} of the load on: the tangent has "
+                "negative pivots, so a limit or bifurcation point lies before",
+                fraction,
+                remedy="Lower the load or stiffen the structure; a real one leaves this state",
+            ),
         )
 
-    def _check_volumes(self, state: StructureState) -> None:
+    def _crossing(self, state: StructureState) -> tuple[Notice, ...]:
+        crossing = self._surface.find(state.displacement)
+        if crossing is None:
+            return ()
+        return (
+            Notice(
+                _STAGE,
+                f"the deformed surface crosses itself: {np.round(crossing.places[0], 4)} m and "
+                f"{np.round(crossing.places[1], 4)} m of the undeformed blade meet; contact is not "
+                "modelled",
+                float(crossing.pairs),
+                remedy="Lower the load or stiffen the structure",
+            ),
+        )
+
+    def _failure(self, state: StructureState) -> EquilibriumError:
+        """Say where and why the path ended."""
+        largest = float(np.linalg.norm(self.values(state), axis=1).max())
+        last = state.steps[-1]
+        cause = (
+            "The structure diverges or buckles there (lower the load, or stiffen it), or cells are "
+            "too poor (refine the mesh)."
+        )
+        if last.negative_pivots:
+            cause = (
+                f"The tangent has {last.negative_pivots} negative pivots there: a limit point, "
+                "beyond which this load has no equilibrium nearby (lower the load, or stiffen the "
+                "structure)."
+            )
+        message = (
+            f"no static equilibrium between {state.fraction:.4g} and {last.fraction:.4g} of the "
+            f"load: {last.reason}, however small the load step (1/{1 / SMALLEST_LOAD_STEP:.0f} of "
+            f"the way). The last equilibrium has a largest displacement of {largest:.4g} m. {cause}"
+        )
+        return self._error(state, message, state.fraction, "part of the load that was reached")
+
+    def _inverted(self, state: StructureState) -> EquilibriumError | None:
         """Refuse a state that turns material inside out somewhere."""
         forms = self.forms
         F = forms.gradient(forms.displacement(state.displacement))
         inside_out = ngs.IfPos(ngs.Det(F), 0.0, 1.0)
         with parallel():
             volume = ngs.Integrate(inside_out, forms.fem, definedon=forms.solid)
-        if volume > 0.0:
-            raise EquilibriumError(
-                f"the equilibrium turns {volume:.3g} m3 of material inside out (det F <= 0); the "
-                "strains are beyond the material law. Lower the load or use another law.",
-                state,
-                1.0,
-            )
+        if volume == 0.0:
+            return None
+        message = (
+            f"the equilibrium turns {volume:.3g} m3 of material inside out (det F <= 0); the "
+            "strains are beyond the material law. Lower the load or use another law."
+        )
+        return self._error(state, message, 1.0, "material inside out")
+
+    @staticmethod
+    def _error(state: StructureState, message: str, fraction: float, what: str) -> EquilibriumError:
+        notice = Notice(_STAGE, f"not converged ({what}): {message}", fraction, 1.0)
+        marked = replace(state, converged=False, notices=(notice, *state.notices))
+        return EquilibriumError(message, marked, fraction)
 
     @cached_property
-    def _equilibrium(self) -> "_Equilibrium":
-        return _Equilibrium(self.forms, self.solver, spins=self.spin.omega != 0.0)
+    def _surface(self) -> SurfaceCrossing:
+        return SurfaceCrossing(self.forms)
 
-
-class _Equilibrium:
-    """The equilibrium as Newton's method sees it; holds the compiled forms and the loads."""
-
-    def __init__(self, forms: StructuralForms, solver: SparseSolver, *, spins: bool) -> None:
-        self._forms = forms
-        self._correction = ngs.GridFunction(forms.V)
-        loads: Terms = [*forms.pressure_terms(), *(forms.spin_terms() if spins else [])]
-        self._internal = forms.form([*forms.elastic_terms(), *forms.mixed_terms()])
-        self._loads = forms.form(loads)
-        self._tangent = forms.form(
-            [*forms.newton_elastic_terms(self._correction), *forms.mixed_terms(), *loads]
+    @cached_property
+    def equations(self) -> Equilibrium:
+        """Equilibrium at given loads as Newton's method sees it."""
+        return Equilibrium(
+            self.forms,
+            self.solver,
+            spins=self.spin.omega != 0.0,
+            support=self.elastic_support,
         )
-        self._system = FreeSystem(forms.free, solver)
-        self._dead = np.zeros(forms.ndof)
-        self._film_volumes = self._measure_film()
-        at_rest = self.internal(np.zeros(forms.ndof))[: forms.n_displacement]
-        self._noise = _ROUNDING_MARGIN * float(np.linalg.norm(at_rest))
-        self._least_force = self._least_displacement = 0.0
 
-    def begin(self, x: FloatArray) -> None:
-        """Prepare a path that starts at a state: its sizes bound those that count as nothing."""
-        self.forget()
-        n = self._forms.n_displacement
-        self._least_force = _NOTHING * float(np.linalg.norm(self.internal(x)[:n]))
-        self._least_displacement = _NOTHING * float(np.linalg.norm(x[:n]))
-
-    def forget(self) -> None:
-        """Forget the last correction: take the stresses from the displacement."""
-        self._correction.vec[:] = 0.0
-
-    def set_loading(self, loading: Loading) -> None:
-        self._forms.set_loading(loading)
-        self._dead[: self._forms.n_displacement] = loading.dead_load
-
-    def internal(self, x: FloatArray) -> FloatArray:
-        return self._apply(self._internal, x)
-
-    def external(self, x: FloatArray) -> FloatArray:
-        return self._dead - self._apply(self._loads, x)
-
-    def residual(self, x: FloatArray) -> tuple[FloatArray, float]:
-        internal, external = self.internal(x), self.external(x)
-        n, free = self._forms.n_displacement, self._forms.free
-        difference = np.where(free, internal - external, 0.0)
-        force = max(float(np.linalg.norm(internal[:n])), float(np.linalg.norm(external[:n])))
-        if force <= self._noise:
-            return difference[free], 0.0
-        size = float(np.linalg.norm(difference[:n])) / max(force, self._least_force)
-        if self._forms.n_pressure:
-            defect = np.linalg.norm(difference[n:]) / np.linalg.norm(self._film_volumes)
-            size = max(size, float(defect))
-        return difference[free], size
-
-    def tangent(self, x: FloatArray) -> Solve:
-        with parallel():
-            self._tangent.AssembleLinearization(self._forms.vector(x))
-        return self._system.factor(self._tangent).solve
-
-    def correct(self, x: FloatArray, step: FloatArray) -> tuple[FloatArray, float]:
-        correction = np.zeros(len(x))
-        correction[self._forms.free] = -step
-        n = self._forms.n_displacement
-        corrected = x + correction
-        self._correction.vec.FV().NumPy()[:] = correction[:n]
-        scale = max(float(np.linalg.norm(corrected[:n])), self._least_displacement)
-        change = float(np.linalg.norm(correction[:n]))
-        return corrected, change / scale if scale > 0.0 else 0.0
-
-    def _apply(self, form: ngs.BilinearForm, x: FloatArray) -> FloatArray:
-        vector = self._forms.vector(x)
-        result = vector.CreateVector()
-        with parallel():
-            form.Apply(vector, result)
-        return np.array(result)
-
-    def _measure_film(self) -> FloatArray:
-        """Volume that belongs to each film pressure unknown [m3]."""
-        forms = self._forms
-        if forms.P is None:
-            return np.zeros(0)
-        q = forms.P.TestFunction()
-        volumes = ngs.LinearForm(forms.P)
-        volumes += q * ngs.dx(definedon=forms.mixed_region)
-        return np.array(volumes.Assemble().vec)
+    @cached_property
+    def elastic_support(self) -> ElasticSupport | None:
+        """The elastic support's forces and stiffness, if there is one."""
+        return None if self.support is None else assemble_support(self.forms, self.support)

@@ -24,9 +24,15 @@ Pressure, sections to surface
     :math:`x_r(\ell)`, its tangent :math:`T_k`, and its least-squares fit
     :math:`\hat x(s) = \sum_k x_k w_k(s)`. Because the weights sum to 1, the total force across
     the span and the total moment about the reference line are conserved too. Sections know no
-    force along the span; what the pressure makes of it on a tapered or bent blade stays and is
-    reported as leftover. Any conservative transfer needs such a condition; compare Farhat,
-    Lesoinne and Le Tallec, Comput. Methods Appl. Mech. Engrg. 157 (1998) 95-114.
+    force along the span. What the pressure makes of it on a tapered or bent blade (the suction of
+    the nose, the tip face) is real and stays, reported as leftover. (To remove it by pressure
+    would take changes as large as the pressure itself.) The moments across the span are conserved
+    as well as the weights resolve the span; what is left is reported. Any conservative transfer
+    needs such conditions; compare Farhat, Lesoinne and Le Tallec, Comput. Methods Appl. Mech.
+    Engrg. 157 (1998) 95-114. Which work is conserved with the loads: theory S1-91.
+
+The root face is clamped and no part of the surface. The tip face and the trailing-edge face take
+the pressures between the upper and the lower side, see `quietblade.propulsion.section_pressure`.
 """
 
 from dataclasses import dataclass
@@ -37,12 +43,12 @@ from scipy.linalg import LinAlgError, cho_factor, cho_solve
 from scipy.sparse import csr_array, diags_array, vstack
 
 from quietblade.errors import GeometryError, MeshError
-from quietblade.flow.loads import SectionLoads
+from quietblade.flow.loads import SectionLoads, integrate
 from quietblade.flow.sections import DeformedSections
 from quietblade.geometry import Blade
 from quietblade.mesh.surface import SurfaceQuadrature
 from quietblade.propulsion.section_pressure import SectionPressure
-from quietblade.typing import FloatArray
+from quietblade.typing import FloatArray, IntArray
 
 _DEGREE = 3
 _LARGEST_GAP = 0.05  # of the chord, between exact sections and surface
@@ -63,6 +69,9 @@ class SurfacePressure:
         falls with the element size at the nose; at 20 mm on a chord of 75 to 250 mm it is 0.4.
     force, moment : ndarray, shape (3,)
         Load on the deformed wetted surface [N], moment about the origin [N m].
+    force_error, moment_error : ndarray, shape (3,)
+        These less the sections' load (`quietblade.flow.loads.integrate`) [N, N m]. The force error
+        is the leftover, along the span.
     leftover : ndarray, shape (K,)
         Force along the span beside each weight function that the sections do not have [N].
     mismatch : float
@@ -75,6 +84,8 @@ class SurfacePressure:
     moment: FloatArray
     leftover: FloatArray
     mismatch: float
+    force_error: FloatArray
+    moment_error: FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,6 +94,8 @@ class _Balance:
 
     rows: csr_array
     targets: FloatArray
+    kinds: IntArray
+    """0 for forces, 1 for moments."""
     along_rows: csr_array
     along_targets: FloatArray
 
@@ -214,13 +227,17 @@ class LoadTransfer:
         values = np.zeros(len(self._points))
         values[self._nodes] = corrected
         size = float(np.sqrt(self._area @ first**2))
+        force, moment = -at_points @ area, -at_points @ np.cross(where, area)
+        total = integrate(sections, loads)
         return SurfacePressure(
             values=values,
             correction=float(np.sqrt(self._area @ change**2)) / size if size > 0.0 else 0.0,
-            force=-at_points @ area,
-            moment=-at_points @ np.cross(where, area),
+            force=force,
+            moment=moment,
             leftover=balance.along_rows @ corrected - balance.along_targets,
             mismatch=mismatch,
+            force_error=force - total.force,
+            moment_error=moment - total.moment,
         )
 
     def _balance(
@@ -248,6 +265,7 @@ class LoadTransfer:
         return _Balance(
             csr_array(vstack(rows)),
             np.concatenate(targets),
+            np.repeat([0, 0, 1], len(along)),
             component(force_rows, along),
             dot(force, along),
         )
@@ -337,8 +355,8 @@ def _smallest_change(
         factor = cho_factor(scale[:, None] * gram * scale)
     except LinAlgError as error:
         raise MeshError(
-            f"load transfer: {len(scale) // 3} weight functions along the span are too many for "
-            "the mesh of the wetted surface; use fewer, or a finer mesh"
+            f"load transfer: {int(np.sum(balance.kinds))} weight functions along the span are too "
+            "many for the mesh of the wetted surface; use fewer, or a finer mesh"
         ) from error
     change = np.zeros_like(pressure)
     for _ in range(3):  # the repetitions remove the round-off of the first
@@ -346,9 +364,8 @@ def _smallest_change(
         change += scaled.T @ (scale * cho_solve(factor, scale * rest))
     rest = balance.targets - balance.rows @ (pressure + change)
     size = np.maximum(np.abs(balance.targets), abs(balance.rows) @ np.abs(pressure))
-    forces, moments = slice(None, -len(scale) // 3), slice(-len(scale) // 3, None)
     mismatch = max(
         float(np.max(np.abs(rest[kind])) / max(np.max(size[kind]), np.finfo(float).tiny))
-        for kind in (forces, moments)
+        for kind in (balance.kinds == 0, balance.kinds == 1)
     )
     return change, mismatch

@@ -15,8 +15,10 @@ from quietblade.results.summary import (
     MeshSummary,
     ModesSummary,
     ModeSummary,
+    PerformanceSummary,
     RunSummary,
     SoundPowerSummary,
+    StateFigures,
     StaticSummary,
     Summary,
 )
@@ -35,6 +37,7 @@ def summarise(result: Result) -> Summary:
         title=result.title,
         blade=result.blade,
         static=_static(result),
+        performance=_performance(result),
         modes=ModesSummary(
             C0=_modes(configurations.get("C0")), C1=_modes(configurations.get("C1"))
         ),
@@ -74,6 +77,33 @@ def _static(result: Result) -> StaticSummary:
         relative_change=float(static.history.relative_change[-1]),
         changes=tuple(static.history.relative_change.tolist()),
         converged=static.converged,
+    )
+
+
+def _performance(result: Result) -> PerformanceSummary:
+    figures = result.static.performance
+
+    def of(name: str) -> StateFigures:
+        row = state(name)
+        return StateFigures(
+            advance_ratio=float(figures.advance_ratio[row]),
+            thrust_n=float(figures.thrust[row]),
+            torque_nm=float(figures.torque[row]),
+            thrust_coefficient=float(figures.thrust_coefficient[row]),
+            torque_coefficient=float(figures.torque_coefficient[row]),
+            efficiency=float(figures.efficiency[row]),
+            inviscid_efficiency=float(figures.inviscid_efficiency[row]),
+        )
+
+    return PerformanceSummary(
+        inflow=figures.inflow,
+        friction=figures.friction,
+        blades=figures.blades,
+        rigid=of("rigid"),
+        chained=of("chained"),
+        coupled=of("coupled"),
+        inception_depth_m=figures.inception_depth,
+        inception_speed_m_s=figures.inception_speed,
     )
 
 

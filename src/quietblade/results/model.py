@@ -43,6 +43,11 @@ class CouplingHistory(Record):
     relative_change: FloatArray
     tip_displacement: FloatArray
     lift: FloatArray
+    error: FloatArray
+    rate: FloatArray
+    eigenvalue: ComplexArray
+    fraction: FloatArray
+    factorizations: IntArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,6 +60,8 @@ class NewtonTable(Record):
     iteration: IntArray
     residual: FloatArray
     increment: FloatArray
+    force: FloatArray
+    motion: FloatArray
     new_tangent: BoolArray
 
 
@@ -72,6 +79,80 @@ class SectionCurves(Record):
     lift_coefficient: FloatArray
     lift_per_length: FloatArray
     warp: FloatArray
+    reynolds: FloatArray
+    drag_coefficient: FloatArray
+    suction: FloatArray
+    cavitation_number: FloatArray
+    shedding_frequency: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class PerformanceFigures(Record):
+    """Figures of the whole rotor; rows are the states rigid, chained, coupled."""
+
+    group: ClassVar[str] = "static/performance"
+    inflow: str
+    friction: str
+    blades: int
+    advance_speed: float
+    diameter: FloatArray
+    thrust: FloatArray
+    torque: FloatArray
+    advance_ratio: FloatArray
+    thrust_coefficient: FloatArray
+    torque_coefficient: FloatArray
+    efficiency: FloatArray
+    inviscid_efficiency: FloatArray
+    inception_depth: float
+    inception_speed: float
+
+
+@dataclass(frozen=True, eq=False)
+class StressTable(Record):
+    """Largest stress and strain by region."""
+
+    group: ClassVar[str] = "static/stress"
+    region: tuple[str, ...]
+    von_mises: FloatArray
+    von_mises_p99: FloatArray
+    von_mises_place: FloatArray
+    principal_stress: FloatArray
+    logarithmic_strain: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class FailureTable(Record):
+    """Failure indices of the materials whose strength is known."""
+
+    group: ClassVar[str] = "static/failure"
+    region: tuple[str, ...]
+    name: tuple[str, ...]
+    value: FloatArray
+    p99: FloatArray
+    place: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class ReactionResult(Record):
+    """Force and moment of the root, and how well forces balance."""
+
+    group: ClassVar[str] = "static/reaction"
+    force: FloatArray
+    moment: FloatArray
+    force_imbalance: float
+    moment_imbalance: float
+    transferred_force_error: float
+    transferred_moment_error: float
+
+
+@dataclass(frozen=True, eq=False)
+class LoadTable(Record):
+    """Loads besides those of flow and spin."""
+
+    group: ClassVar[str] = "static/loads"
+    kind: tuple[str, ...]
+    force: FloatArray
+    moment: FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,6 +173,11 @@ class StaticResult(Record):
     history: CouplingHistory
     newton: NewtonTable
     sections: SectionCurves
+    performance: PerformanceFigures
+    stress: StressTable
+    failure: FailureTable
+    reaction: ReactionResult
+    loads: LoadTable
     mid_section: MidSection
     tip_displacement: FloatArray
     force: FloatArray
@@ -101,6 +187,9 @@ class StaticResult(Record):
     torque: FloatArray
     tolerance: float
     converged: bool
+    coupling_method: str
+    coupling_kind: str
+    load_fraction: float
     max_film_shear_strain: float = NAN
     film_shear_strain_p99: float = NAN
     max_film_shear_strain_place: FloatArray = field(default_factory=lambda: np.full(3, NAN))
@@ -145,6 +234,7 @@ class Spectrum(Record):
     injected: FloatArray
     dissipated: FloatArray
     solver_residual: FloatArray
+    error_estimate: FloatArray
     mobility: ComplexArray
 
     def __post_init__(self) -> None:
@@ -166,12 +256,49 @@ class Spectrum(Record):
 
 
 @dataclass(frozen=True, eq=False)
+class SweepRecord(Record):
+    """How the spectrum was made."""
+
+    group: ClassVar[str] = "C*/sweep"
+    method: str
+    accuracy: float
+    largest_estimate: float
+    vectors: int
+    columns: int
+    factorizations: int
+
+
+@dataclass(frozen=True, eq=False)
+class PeakTable(Record):
+    """Peaks of the radiated power."""
+
+    group: ClassVar[str] = "C*/peaks"
+    frequency: FloatArray
+    power_level: FloatArray
+    width: FloatArray
+    estimate: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class BandTable(Record):
+    """Mean power by decidecade band and over all."""
+
+    group: ClassVar[str] = "C*/bands"
+    centre: FloatArray
+    level: FloatArray
+    mean_level: float
+
+
+@dataclass(frozen=True, eq=False)
 class ConfigurationResult(Record):
     """Step 2 about one configuration, C0 or C1."""
 
     group: ClassVar[str] = "C*"
     modes: ModeTable
     spectrum: Spectrum
+    sweep: SweepRecord
+    peaks: PeakTable
+    bands: BandTable
     radiation_condition: str
     outer_radius: float
     sound_speed: float

@@ -54,6 +54,31 @@ class StaticSummary(_Part):
     converged: bool = _of("static/converged")
 
 
+class StateFigures(_Part):
+    """Figures of the rotor in one state of its blades, friction included."""
+
+    advance_ratio: Number = _of("static/performance/advance_ratio")
+    thrust_n: Number = _of("static/performance/thrust")
+    torque_nm: Number = _of("static/performance/torque")
+    thrust_coefficient: Number = _of("static/performance/thrust_coefficient")
+    torque_coefficient: Number = _of("static/performance/torque_coefficient")
+    efficiency: Number = _of("static/performance/efficiency")
+    inviscid_efficiency: Number = _of("static/performance/inviscid_efficiency")
+
+
+class PerformanceSummary(_Part):
+    """The rotor: undeformed, under the undeformed blade's load, and in equilibrium."""
+
+    inflow: str = _of("static/performance/inflow")
+    friction: str = _of("static/performance/friction")
+    blades: int = _of("static/performance/blades")
+    rigid: StateFigures
+    chained: StateFigures
+    coupled: StateFigures
+    inception_depth_m: Number = _of("static/performance/inception_depth")
+    inception_speed_m_s: Number = _of("static/performance/inception_speed")
+
+
 class ModeSummary(_Part):
     """One wet mode."""
 
@@ -148,6 +173,7 @@ class Summary(_Part):
     title: str = _of("title")
     blade: str = _of("blade")
     static: StaticSummary
+    performance: PerformanceSummary
     modes: ModesSummary
     sound_power: SoundPowerSummary
     balance: BalanceSummary

@@ -31,6 +31,7 @@ def summary_tables(summary: Summary) -> tuple[Table, ...]:
     """Headline tables in the order in which people ask."""
     tables = [
         _static(summary),
+        _performance(summary),
         _modes(summary),
         _claims(summary),
         _checks(summary),
@@ -89,6 +90,31 @@ def _static(summary: Summary) -> Table:
             ("  change by pass", ", ".join(number(c, ".1e") for c in static.changes)),
         ),
     )  # fmt: skip
+
+
+def _performance(summary: Summary) -> Table:
+    figures = summary.performance
+    states = (figures.rigid, figures.chained, figures.coupled)
+    rows = [
+        (name, *(number(getattr(state, key), form) for state in states), definition)
+        for name, key, form, definition in (
+            ("Thrust T [N]", "thrust_n", ".2f", "all blades, with friction"),
+            ("Torque Q [N m]", "torque_nm", ".2f", "all blades, with friction"),
+            ("Advance ratio J", "advance_ratio", ".4g", "V_A / (n D)"),
+            ("K_T", "thrust_coefficient", ".4g", "T / (rho n^2 D^4)"),
+            ("K_Q", "torque_coefficient", ".4g", "Q / (rho n^2 D^5)"),
+            ("Efficiency", "efficiency", ".4f", "T V_A / (Q omega)"),
+            ("  without friction", "inviscid_efficiency", ".4f", ""),
+        )
+    ]
+    note = (
+        f"{figures.blades} blade{'s' if figures.blades > 1 else ''}, inflow {figures.inflow}, "
+        f"friction {figures.friction}; cavitation begins at a depth of the axis of "
+        f"{number(figures.inception_depth_m, '.2f')} m, or at "
+        f"{number(figures.inception_speed_m_s, '.2f')} m/s of ship speed"
+    )
+    heads = ("Rotor", "rigid", "chained", "coupled", "Definition")
+    return Table("Performance", heads, tuple(rows), note)
 
 
 def _modes(summary: Summary) -> Table:

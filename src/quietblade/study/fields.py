@@ -5,32 +5,49 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from quietblade.case import Case
-from quietblade.materials import ply_axes, section_directions
 from quietblade.mesh import CellBlock, Mesh
-from quietblade.propulsion.strain import nodal_strain
+from quietblade.propulsion.stress import RegionStress
 from quietblade.results.store import RunFolder
 from quietblade.results.vtk import PointField, write_fields
-from quietblade.study import translate
+from quietblade.study.sound import Sound
 from quietblade.study.statics import Statics
-from quietblade.study.vibration import Sound, Vibration, nodal_shapes
+from quietblade.study.vibration import Vibration, nodal_shapes
 from quietblade.typing import ComplexArray, FloatArray
 
 
-def write_static_fields(case: Case, mesh: Mesh, statics: Statics, folder: RunFolder) -> None:
-    """Displacement, film shear strain and steady pressure of the blade, drawn on C0."""
+def write_static_fields(mesh: Mesh, statics: Statics, folder: RunFolder) -> None:
+    """Displacement, pressure, stress and strain of the blade, drawn on C0."""
     displacement = np.where(_solid(mesh)[:, None], statics.state.displacement, np.nan)
     fields = [
         PointField("displacement", displacement),
         PointField("pressure", _wetted(mesh, statics.state.surface.values)),
     ]
-    if statics.shear is not None:
-        axes = ply_axes(0.0, *section_directions(translate.blade_angle_field(case)))
-        strain = nodal_strain(statics.structure, statics.state.structure, axes, region="film")
-        fields.append(PointField("film_shear_strain", 2.0 * np.hypot(strain[:, 3], strain[:, 4])))
+    for region in statics.stress.regions.values():
+        fields += _stress_fields(region, len(mesh.nodes))
     cells = {name: blocks for name, blocks in mesh.cells.items() if name != "water"}
     cells["excited"] = (CellBlock("triangle6", mesh.faces["excited"]),)
     write_fields(folder.static_fields, mesh.nodes, cells, fields)
+
+
+def _stress_fields(region: RegionStress, count: int) -> list[PointField]:
+    """Stress and strain of a region; on the interface each region has values of its own."""
+    at_nodes = region.at_nodes
+    fields = [
+        PointField("von_mises_stress", region.spread(at_nodes.von_mises, count), region.region),
+        PointField(
+            "largest_strain",
+            region.spread(at_nodes.principal_logarithmic[:, 0], count),
+            region.region,
+        ),
+    ]
+    for name, values in region.failure_at_nodes.items():
+        label = f"{region.region} {name.replace('_', ' ')}"
+        fields.append(PointField("failure_index", region.spread(values, count), label))
+    strain = at_nodes.material_strain
+    if region.region == "film" and strain is not None:
+        shear = 2.0 * np.hypot(strain[:, 0, 2], strain[:, 1, 2])
+        fields.append(PointField("film_shear_strain", region.spread(shear, count)))
+    return fields
 
 
 def write_vibration_fields(
@@ -62,19 +79,12 @@ def _scaled(shape: ComplexArray) -> ComplexArray:
 
 def _responses(mesh: Mesh, vibration: Vibration, sound: Sound) -> Iterator[PointField]:
     """Response at the frequency of the sweep nearest to each damped mode."""
-    response = sound.response
-    assert response.solution is not None
-    band = response.frequency[0], response.frequency[-1]
-    inside = (vibration.damped.frequency >= band[0]) & (vibration.damped.frequency <= band[1])
-    for frequency in vibration.damped.frequency[inside]:
-        row = int(np.argmin(np.abs(response.frequency - frequency)))
-        solution = response.solution[row]
-        label = f"{response.frequency[row]:.2f} Hz"
+    for frequency, solution in zip(sound.snapshots, sound.solutions, strict=True):
+        label = f"{frequency:.2f} Hz"
+        omega = 2.0 * np.pi * float(frequency)
         (shape,) = nodal_shapes(mesh, vibration.operators, solution[None])
         yield PointField("response", _on_solid(mesh, shape), label)
-        yield PointField(
-            "sound_pressure", _sound_pressure(mesh, vibration, response.omega[row], solution), label
-        )
+        yield PointField("sound_pressure", _sound_pressure(mesh, vibration, omega, solution), label)
 
 
 def _sound_pressure(

@@ -13,23 +13,41 @@ from scipy.sparse import csr_matrix, diags_array
 from quietblade import __version__
 from quietblade.case import Case
 from quietblade.errors import Notice
+from quietblade.flow import (
+    ViscousLoads,
+    cavitation_number,
+    inception_depth,
+    inception_ship_speed,
+    performance,
+    section_drag,
+    section_shedding,
+    viscous_loads,
+)
+from quietblade.flow.cavitation import suction
 from quietblade.flow.inflow import BladeFlow
 from quietblade.flow.sections import DeformedSections
 from quietblade.linalg import SolverReport as LinearReport
 from quietblade.linalg import default_threads
 from quietblade.mesh import Mesh
 from quietblade.propulsion.coupling import StaticState
+from quietblade.propulsion.loads_assembly import AppliedLoads
+from quietblade.propulsion.stress import StressReport
 from quietblade.results import model
+from quietblade.study.sound import Sound
 from quietblade.study.statics import Statics
-from quietblade.study.vibration import Sound, Vibration
+from quietblade.study.translate import environment
+from quietblade.study.translate import inflow as inflow_of
+from quietblade.study.vibration import Vibration
 from quietblade.typing import FloatArray
+from quietblade.vibroacoustics.bands import Bands, band_mean
 from quietblade.vibroacoustics.matching import match
+from quietblade.vibroacoustics.power import level
 
 PACKAGES = ("ngsolve", "gmsh", "rslab", "numpy", "scipy", "xarray", "h5netcdf")
 """Packages that the numbers depend on."""
 
 
-def static_result(statics: Statics) -> model.StaticResult:
+def static_result(case: Case, statics: Statics) -> model.StaticResult:
     """Tables and figures of step 1."""
     state = statics.state
     flows = (state.rigid, state.chained, state.coupled)
@@ -37,7 +55,12 @@ def static_result(statics: Statics) -> model.StaticResult:
     result = model.StaticResult(
         history=_history(state),
         newton=_newton(state),
-        sections=_section_curves(flows),
+        sections=_section_curves(case, flows),
+        performance=_performance(case, flows),
+        stress=_stress(statics.stress),
+        failure=_failure(statics.stress),
+        reaction=_reaction(statics),
+        loads=_loads(statics.loads),
         mid_section=_mid_section(flows),
         tip_displacement=state.tip_displacement,
         force=np.array([t.force for t in total]),
@@ -47,6 +70,9 @@ def static_result(statics: Statics) -> model.StaticResult:
         torque=np.array([t.torque for t in total]),
         tolerance=state.tolerance,
         converged=state.converged,
+        coupling_method=state.method,
+        coupling_kind=state.kind,
+        load_fraction=state.fraction,
         max_blade_shear_strain=statics.blade_shear,
     )
     shear = statics.shear
@@ -60,13 +86,78 @@ def static_result(statics: Statics) -> model.StaticResult:
     )
 
 
-def _history(state: StaticState) -> model.CouplingHistory:
-    change = np.array([step.change for step in state.history])
-    return model.CouplingHistory(
-        relative_change=np.where(np.isfinite(change), change, np.nan),
-        tip_displacement=np.array([step.tip for step in state.history]),
-        lift=np.array([step.lift for step in state.history]),
+def _stress(report: StressReport) -> model.StressTable:
+    regions = list(report.regions.values())
+    peaks = [region.peaks for region in regions]
+    return model.StressTable(
+        region=tuple(region.region for region in regions),
+        von_mises=np.array([p["von_mises"].value for p in peaks]),
+        von_mises_p99=np.array([p["von_mises"].percentile for p in peaks]),
+        von_mises_place=np.array([p["von_mises"].place for p in peaks]),
+        principal_stress=np.array([p["principal_stress"].value for p in peaks]),
+        logarithmic_strain=np.array([p["logarithmic_strain"].value for p in peaks]),
     )
+
+
+def _failure(report: StressReport) -> model.FailureTable:
+    rows = [
+        (region.region, name, region.peaks[name])
+        for region in report.regions.values()
+        for name in region.failure_at_points
+    ]
+    return model.FailureTable(
+        region=tuple(region for region, _, _ in rows),
+        name=tuple(name for _, name, _ in rows),
+        value=np.array([peak.value for _, _, peak in rows], dtype=float),
+        p99=np.array([peak.percentile for _, _, peak in rows], dtype=float),
+        place=np.array([peak.place for _, _, peak in rows], dtype=float).reshape(-1, 3),
+    )
+
+
+def _reaction(statics: Statics) -> model.ReactionResult:
+    reaction, total = statics.stress.reaction, statics.state.coupled.total
+    surface = statics.state.surface
+    return model.ReactionResult(
+        force=reaction.force,
+        moment=reaction.moment,
+        force_imbalance=reaction.force_imbalance,
+        moment_imbalance=reaction.moment_imbalance,
+        transferred_force_error=_relative(surface.force_error, total.force),
+        transferred_moment_error=_relative(surface.moment_error, total.moment),
+    )
+
+
+def _relative(error: FloatArray, whole: FloatArray) -> float:
+    size = float(np.linalg.norm(whole))
+    return float(np.linalg.norm(error)) / size if size > 0.0 else float("nan")
+
+
+def _loads(loads: AppliedLoads | None) -> model.LoadTable:
+    parts = () if loads is None else loads.parts
+    return model.LoadTable(
+        kind=tuple(type(part.load).__name__ for part in parts),
+        force=np.array([part.force for part in parts], dtype=float).reshape(-1, 3),
+        moment=np.array([part.moment for part in parts], dtype=float).reshape(-1, 3),
+    )
+
+
+def _history(state: StaticState) -> model.CouplingHistory:
+    steps = state.history
+    return model.CouplingHistory(
+        relative_change=_finite([step.change for step in steps]),
+        tip_displacement=np.array([step.tip for step in steps]),
+        lift=np.array([step.lift for step in steps]),
+        error=_finite([step.error for step in steps]),
+        rate=_finite([step.rate for step in steps]),
+        eigenvalue=np.array([step.eigenvalue for step in steps], dtype=complex),
+        fraction=np.array([step.fraction for step in steps]),
+        factorizations=np.array([step.factorizations for step in steps]),
+    )
+
+
+def _finite(values: list[float]) -> FloatArray:
+    array = np.array(values, dtype=float)
+    return np.where(np.isfinite(array), array, np.nan)
 
 
 def _newton(state: StaticState) -> model.NewtonTable:
@@ -77,13 +168,17 @@ def _newton(state: StaticState) -> model.NewtonTable:
         iteration=np.array([line.iteration for _, line in rows]),
         residual=np.array([line.residual for _, line in rows]),
         increment=np.array([line.increment for _, line in rows]),
+        force=np.array([line.force for _, line in rows]),
+        motion=np.array([line.motion for _, line in rows]),
         new_tangent=np.array([line.new_tangent for _, line in rows]),
     )
 
 
-def _section_curves(flows: tuple[BladeFlow, ...]) -> model.SectionCurves:
+def _section_curves(case: Case, flows: tuple[BladeFlow, ...]) -> model.SectionCurves:
     sections = [flow.sections for flow in flows]
     loads = [flow.loads for flow in flows]
+    drags = _viscous(case, flows)
+    water = environment(case)
     radius = [np.linalg.norm(s.reference[:, 1:], axis=1) for s in sections]
     root, tip = sections[0].reference[0, 2], sections[0].reference[-1, 2]
     return model.SectionCurves(
@@ -96,6 +191,54 @@ def _section_curves(flows: tuple[BladeFlow, ...]) -> model.SectionCurves:
         lift_coefficient=np.array([load.lift_coefficient for load in loads]),
         lift_per_length=np.array([load.lift_per_length for load in loads]),
         warp=np.array([s.warp for s in sections]),
+        reynolds=np.array([load.reynolds for load in loads]),
+        drag_coefficient=np.array([drag.drag_coefficient for drag in drags]),
+        suction=np.array([suction(load) for load in loads]),
+        cavitation_number=np.array(
+            [cavitation_number(s, load, water) for s, load in zip(sections, loads, strict=True)]
+        ),
+        shedding_frequency=np.array(
+            [section_shedding(s, load) for s, load in zip(sections, loads, strict=True)]
+        ),
+    )
+
+
+def _viscous(case: Case, flows: tuple[BladeFlow, ...]) -> list[ViscousLoads]:
+    """Drag of each state by the case's friction line, or none."""
+    line = case.flow.friction
+    return [
+        viscous_loads(
+            flow.sections,
+            flow.loads,
+            0.0 if line == "none" else section_drag(flow.sections, flow.loads, line),
+        )
+        for flow in flows
+    ]
+
+
+def _performance(case: Case, flows: tuple[BladeFlow, ...]) -> model.PerformanceFigures:
+    """Figures of the rotor in each state."""
+    inflow, water = inflow_of(case), environment(case)
+    figures = [
+        performance(flow, inflow, drag)
+        for flow, drag in zip(flows, _viscous(case, flows), strict=True)
+    ]
+    coupled = flows[-1].sections, flows[-1].loads
+    return model.PerformanceFigures(
+        inflow=inflow.name,
+        friction=case.flow.friction,
+        blades=inflow.blades,
+        advance_speed=figures[0].advance_speed,
+        diameter=np.array([f.diameter for f in figures]),
+        thrust=np.array([f.thrust for f in figures]),
+        torque=np.array([f.torque for f in figures]),
+        advance_ratio=np.array([f.advance_ratio for f in figures]),
+        thrust_coefficient=np.array([f.thrust_coefficient for f in figures]),
+        torque_coefficient=np.array([f.torque_coefficient for f in figures]),
+        efficiency=np.array([f.efficiency for f in figures]),
+        inviscid_efficiency=np.array([performance(flow, inflow).efficiency for flow in flows]),
+        inception_depth=float(inception_depth(*coupled, water).max()),
+        inception_speed=float(inception_ship_speed(*coupled, water, case.flow.speed).min()),
     )
 
 
@@ -124,6 +267,9 @@ def configuration_result(
     return model.ConfigurationResult(
         modes=_mode_table(vibration, other),
         spectrum=_spectrum(case, vibration, sound),
+        sweep=_sweep(case, sound),
+        peaks=_peaks(sound),
+        bands=_bands(sound),
         radiation_condition=operators.condition.name,
         outer_radius=operators.radius,
         sound_speed=operators.sound_speed,
@@ -163,18 +309,62 @@ def _mode_table(vibration: Vibration, other: Vibration | None) -> model.ModeTabl
 
 
 def _spectrum(case: Case, vibration: Vibration, sound: Sound) -> model.Spectrum:
-    response, budget, waves = sound.response, sound.budget, sound.multipoles
-    assert response.solution is not None
+    budget, waves = sound.budget, sound.multipoles
     force = case.excitation.pressure * vibration.area
-    work = response.solution @ vibration.load
     return model.Spectrum(
-        frequency=response.frequency,
+        frequency=sound.frequency,
         power=np.array([budget.radiated, budget.surface, waves.power]),
         power_by_degree=waves.power_by_degree.T,
         injected=budget.injected,
         dissipated=budget.dissipated,
-        solver_residual=response.residual,
-        mobility=1j * response.omega * work / force**2,
+        solver_residual=sound.residual,
+        error_estimate=sound.estimate,
+        mobility=2j * np.pi * sound.frequency * sound.work / force**2,
+    )
+
+
+def _sweep(case: Case, sound: Sound) -> model.SweepRecord:
+    certificate = sound.certificate
+    if certificate is None:
+        solved = sum(sound.report.factorizations.values())
+        nan = float("nan")
+        return model.SweepRecord("direct", nan, nan, 0, 0, solved)
+    return model.SweepRecord(
+        "reduced",
+        case.acoustics.accuracy,
+        float(certificate.estimate.max()),
+        certificate.vectors,
+        certificate.size,
+        certificate.factorizations,
+    )
+
+
+def _peaks(sound: Sound) -> model.PeakTable:
+    """Peaks of the reduced model, or the highest of three neighbours of a direct sweep."""
+    if sound.peaks is not None:
+        peaks = sound.peaks
+        return model.PeakTable(peaks.frequency, level(peaks.power), peaks.width, peaks.estimate)
+    solved = np.flatnonzero(np.isfinite(sound.budget.radiated))
+    power = sound.budget.radiated[solved]
+    inner = np.flatnonzero((power[1:-1] > power[:-2]) & (power[1:-1] > power[2:])) + 1
+    unknown = np.full(len(inner), np.nan)
+    return model.PeakTable(
+        sound.frequency[solved][inner], level(power[inner]), unknown, unknown.copy()
+    )
+
+
+def _bands(sound: Sound) -> model.BandTable:
+    """Mean power in the decidecades that the frequencies cover, and in all of them."""
+    frequency, power = sound.frequency, sound.budget.radiated
+    solved = np.isfinite(power)
+    frequency, power = frequency[solved], power[solved]
+    bands = Bands.between(frequency[0], frequency[-1])
+    mean = bands.mean(frequency, power)
+    whole = np.isfinite(mean)
+    return model.BandTable(
+        bands.centre[whole],
+        level(mean[whole]),
+        float(level(np.array(band_mean(frequency, power, (frequency[0], frequency[-1]))))),
     )
 
 

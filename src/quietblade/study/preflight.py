@@ -8,10 +8,10 @@ import numpy as np
 from scipy.optimize import brentq
 
 from quietblade.case import Case, Finding
-from quietblade.case.materials import IsotropicWords, MooneyRivlinWords, OrthotropicWords
+from quietblade.case.materials import MooneyRivlinWords, NeoHookeanWords
 from quietblade.errors import Notice
 from quietblade.geometry import Blade
-from quietblade.study import translate
+from quietblade.study import solids, translate
 from quietblade.typing import FloatArray
 
 _MOST_FACES = 400_000
@@ -128,8 +128,8 @@ def bending_wavelength(case: Case, blade: Blade, frequency: float) -> float:
     xi = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, 201))
     half = blade.family.half_thickness(xi, blade.thickness(middle), blade.trailing_edge)
     height = float(2.0 * np.trapezoid(half, xi) * blade.chord(middle)[0])
-    rigidity = _modulus_along_span(case) * height**3 / 12.0
-    mass = case.material("blade").density * height
+    rigidity = solids.bending_modulus(case) * height**3 / 12.0
+    mass = solids.blade_density(case) * height
     omega = 2.0 * np.pi * frequency
 
     def excess(log_k: float) -> float:
@@ -138,20 +138,6 @@ def bending_wavelength(case: Case, blade: Blade, frequency: float) -> float:
         return float(np.log(rigidity) + 4.0 * log_k - np.log(omega**2 * (mass + added)))
 
     return float(2.0 * np.pi / np.exp(brentq(excess, -50.0, 50.0)))
-
-
-def _modulus_along_span(case: Case) -> float:
-    words = case.material("blade")
-    match words:
-        case IsotropicWords():
-            return words.E
-        case OrthotropicWords():
-            # Jones, Mechanics of Composite Materials, 2nd ed., eq. (2.97)
-            c, s = np.cos(words.ply_angle), np.sin(words.ply_angle)
-            shear = 1.0 / words.G12 - 2.0 * words.ratio(1, 2) / words.E1
-            return float(1.0 / (c**4 / words.E1 + s**4 / words.E2 + shear * (s * c) ** 2))
-        case MooneyRivlinWords():
-            return 3.0 * words.shear_modulus
 
 
 def _clearance(blade: Blade, centre: FloatArray, radius: float) -> tuple[float, float]:
@@ -218,14 +204,14 @@ def _film_cover(blade: Blade) -> float | None:
 
 
 def _radiation_notices(case: Case, kr: float) -> Iterator[Notice]:
-    if kr < _LEAST_KR:
+    if kr < _LEAST_KR and case.acoustics.radiation != "dtn":
         yield Notice(
             "acoustics.radiation",
-            f"kR is small at {case.acoustics.band[0]:g} Hz; {case.acoustics.radiation} is exact "
-            "for a monopole only: sound levels are off by decibels, peak frequencies hardly",
+            f"kR is small at {case.acoustics.band[0]:g} Hz for {case.acoustics.radiation}: sound "
+            "levels are off by decibels, peak frequencies hardly",
             kr,
             _LEAST_KR,
-            "Use a larger sphere_radius and see whether the levels change",
+            'Use radiation = "dtn", or a larger sphere_radius',
         )
 
 
@@ -245,14 +231,14 @@ def _mesh_notices(case: Case, per_bending: float, per_acoustic: float) -> Iterat
 
 
 def _material_notices(case: Case) -> Iterator[Notice]:
-    used = {case.blade.material} | ({case.film.material} if case.film else set())
     for name in case.materials:
-        if name not in used:
+        if name not in solids.used_materials(case):
             yield Notice(f"materials.{name}", "this material is not used", remedy="Remove it")
-    parts = [("blade", _modulus_along_span(case), _SOFTEST_SOLID)]
+    yield from solids.laminate_notices(case)
+    parts = [("blade", solids.bending_modulus(case), _SOFTEST_SOLID)]
     if case.film is not None:
         film = case.material("film")
-        if isinstance(film, MooneyRivlinWords):
+        if isinstance(film, MooneyRivlinWords | NeoHookeanWords):
             parts.append(("film", film.shear_modulus, _SOFTEST_FILM))
     for part, modulus, least in parts:
         if modulus < least:

@@ -10,7 +10,6 @@ from quietblade import __version__
 from quietblade.case import Case
 from quietblade.case.presets import PRESETS, preset_text
 from quietblade.errors import Notice
-from quietblade.flow.limits import Environment
 from quietblade.linalg import default_threads
 from quietblade.mesh import Mesh, build_mesh
 from quietblade.mesh.motion import MeshMotion, solve_mesh_motion
@@ -21,8 +20,9 @@ from quietblade.study import outcome, translate
 from quietblade.study.clock import Clock
 from quietblade.study.fields import write_static_fields, write_vibration_fields
 from quietblade.study.preflight import preflight
+from quietblade.study.sound import Sound, solve_sound
 from quietblade.study.statics import Statics, solve_statics
-from quietblade.study.vibration import Sound, Vibration, frequencies, solve_sound, solve_vibration
+from quietblade.study.vibration import Vibration, frequencies, solve_vibration
 from quietblade.typing import Progress, silent
 
 
@@ -81,25 +81,25 @@ def run_case(case: Case, folder: RunFolder, progress: Progress = silent) -> Resu
         with clock.stage(f"sweep {name}") as report:
             sounds[name] = solve_sound(case, vibration, grid, report)
     with clock.stage("files"):
-        write_static_fields(case, mesh, statics, folder)
+        write_static_fields(mesh, statics, folder)
         for name, vibration in vibrations.items():
             write_vibration_fields(mesh, vibration, sounds[name], folder)
     notices = (
         *facts.notices,
         *mesh.notices,
-        *statics.notices(_environment(case)),
+        *statics.notices(case),
         *chain.from_iterable(_step2_notices(motions[n], vibrations[n], sounds[n]) for n in motions),
     )
     reports = {
         "flow and structure": statics.solver,
         **{f"modes {name}": vibration.solver for name, vibration in vibrations.items()},
-        **{f"sweep {name}": sound.response.report for name, sound in sounds.items()},
+        **{f"sweep {name}": sound.report for name, sound in sounds.items()},
     }
     others = {"C0": "C1", "C1": "C0"}
     result = Result(
         title=case.title,
         blade=paper_blade(case),
-        static=outcome.static_result(statics),
+        static=outcome.static_result(case, statics),
         configurations={
             name: outcome.configuration_result(
                 case, vibration, sounds[name], vibrations.get(others[name])
@@ -154,21 +154,8 @@ def _motions(
     return motions
 
 
-def _environment(case: Case) -> Environment:
-    return Environment(
-        depth=case.flow.depth,
-        atmospheric_pressure=case.flow.atmospheric_pressure,
-        vapour_pressure=case.water.vapour_pressure,
-    )
-
-
 def _step2_notices(
     motion: MeshMotion | None, vibration: Vibration, sound: Sound
 ) -> tuple[Notice, ...]:
-    failures = sound.response.failures
-    failed = [
-        Notice(f"sweep {vibration.name}", f"no solution at {f:.6g} Hz: {why}")
-        for f, why in failures.items()
-    ]
     moved = motion.notices if motion is not None else ()
-    return (*moved, *vibration.notices, *sound.multipoles.notices(), *failed)
+    return (*moved, *vibration.notices, *sound.notices)

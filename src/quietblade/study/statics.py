@@ -8,22 +8,29 @@ import numpy as np
 
 from quietblade.case import Case
 from quietblade.errors import Notice
-from quietblade.flow import limits
+from quietblade.flow import friction_notices, limits
 from quietblade.geometry import Blade
 from quietblade.linalg import SolverReport
-from quietblade.materials import ply_axes, section_directions
 from quietblade.mesh import Mesh
 from quietblade.mesh.surface import SurfaceQuadrature
 from quietblade.propulsion.coupling import StaticState, solve_static
 from quietblade.propulsion.linear import newton_solver
-from quietblade.propulsion.strain import FilmShear, compute_film_shear, nodal_strain
+from quietblade.propulsion.loads_assembly import AppliedLoads, apply_loads
+from quietblade.propulsion.strain import FilmShear, compute_film_shear
+from quietblade.propulsion.stress import RegionStress, StressReport, compute_stress
 from quietblade.propulsion.structure import Structure
+from quietblade.propulsion.tensors import principal_values
 from quietblade.propulsion.transfer import LoadTransfer
-from quietblade.study import translate
+from quietblade.study import solids, translate
+from quietblade.study.loads import steady_loads, support
 from quietblade.typing import Progress
 
 POOR_TRANSFER = 0.5
 """Relative correction of the transferred pressure beyond which a notice is given."""
+
+
+UNBALANCED = 1e-4
+"""Relative difference of reaction and loads beyond which a notice is given."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,26 +43,41 @@ class Statics:
         The solid's equations.
     state : StaticState
         Equilibrium and the way to it.
+    loads : AppliedLoads or None
+        Loads besides those of flow and spin.
     shear : FilmShear or None
         Shear strain of the film in C1.
-    blade_shear : float
-        Largest engineering shear strain at the nodes outside the film, ``max (E_i - E_j)`` of the
-        principal Green-Lagrange strains.
+    stress : StressReport
+        Stress, strain and failure indices by region, and the reaction of the root.
     solver : SolverReport
         What the linear solvers did.
     """
 
     structure: Structure
     state: StaticState
+    loads: AppliedLoads | None
     shear: FilmShear | None
-    blade_shear: float
+    stress: StressReport
     solver: SolverReport
 
-    def notices(self, environment: limits.Environment) -> Iterator[Notice]:
+    @property
+    def blade_shear(self) -> float:
+        """Largest engineering shear strain at the nodes outside the film.
+
+        ``max (E_i - E_j)`` of the principal Green-Lagrange strains.
+        """
+        principal = principal_values(self.stress.regions["blade"].at_nodes.green_lagrange)
+        return float(np.max(principal[:, 0] - principal[:, 2]))
+
+    def notices(self, case: Case) -> Iterator[Notice]:
         """Everything about step 1 that the user should know."""
         yield from self.state.notices
-        coupled = self.state.coupled
-        yield from limits.notices(coupled.sections, coupled.loads, environment)
+        yield from self._stress_notices()
+        flow = self.state.coupled.sections, self.state.coupled.loads
+        yield from translate.inflow(case).notices(*flow)
+        yield from limits.notices(*flow, translate.environment(case))
+        if case.flow.friction != "none":
+            yield from friction_notices(*flow)
         correction = self.state.surface.correction
         if correction > POOR_TRANSFER:
             yield Notice(
@@ -66,17 +88,49 @@ class Statics:
                 "Use a smaller mesh size",
             )
 
+    def _stress_notices(self) -> Iterator[Notice]:
+        for region in self.stress.regions.values():
+            yield from _failure_notices(region)
+        reaction = self.stress.reaction
+        if reaction.force_imbalance > UNBALANCED:
+            yield Notice(
+                "root",
+                "the reaction does not balance the loads; relative difference",
+                reaction.force_imbalance,
+                UNBALANCED,
+                "Tighten static.newton_tolerance",
+            )
+
+
+def _failure_notices(region: RegionStress) -> Iterator[Notice]:
+    for name in region.failure_at_points:
+        peak = region.peaks[name]
+        if peak.value > 1.0:
+            x, y, z = peak.place
+            yield Notice(
+                f"{region.region} at ({x:.3f}, {y:.3f}, {z:.3f}) m",
+                f"failure index {name.replace('_', ' ')} above 1; 99 % of the volume stay below "
+                f"{peak.percentile:.3g}",
+                peak.value,
+                1.0,
+                "Lower the load, or use a stronger material; at sharp edges refine the mesh first",
+            )
+
 
 def solve_statics(case: Case, blade: Blade, mesh: Mesh, progress: Progress) -> Statics:
     """Find the equilibrium of blade and flow that a case describes."""
     solver = newton_solver()
+    springs = support(case)
     structure = Structure(
         mesh.fem,
-        translate.build_materials(case),
+        solids.build_materials(case, blade, mesh.basis),
+        clamped="root" if springs is None else None,
+        support=springs,
         spin=translate.spin(case),
         basis=mesh.basis,
         solver=solver,
     )
+    loads = apply_loads(structure, steady_loads(case, blade), blade=blade) if case.loads else None
     stations = np.linspace(0.0, 1.0, case.flow.sections)
     sections = blade.section(stations, case.flow.section_nodes)
     transfer = LoadTransfer(
@@ -89,22 +143,19 @@ def solve_statics(case: Case, blade: Blade, mesh: Mesh, progress: Progress) -> S
         structure,
         transfer,
         translate.inflow(case),
+        method=case.static.method,
+        ramp=case.static.ramp,
+        extra=(loads.pressure, loads.dead_load) if loads is not None else None,
         tolerance=case.static.tolerance,
         max_iterations=case.static.max_iterations,
         newton_tolerance=case.static.newton_tolerance,
         progress=progress,
     )
-    shear = None
+    shear, axes = None, {}
     if case.film is not None:
-        directions = section_directions(translate.blade_angle_field(case))
-        shear = compute_film_shear(structure, state.structure, ply_axes(0.0, *directions))
+        axes = {"film": solids.surface_axes(blade, mesh.basis)}
+        shear = compute_film_shear(structure, state.structure, axes["film"])
+    plies = solids.blade_plies(case, blade, mesh.basis)
+    stress = compute_stress(structure, state.structure, axes=axes, plies=plies)
     structure.forget()  # its factor is not needed in step 2
-    return Statics(structure, state, shear, _blade_shear(structure, state), solver.report())
-
-
-def _blade_shear(structure: Structure, state: StaticState) -> float:
-    strain = nodal_strain(structure, state.structure, region="blade")
-    E11, E22, E33, E23, E13, E12 = strain[np.isfinite(strain).all(axis=1)].T
-    tensors = np.moveaxis(np.array([[E11, E12, E13], [E12, E22, E23], [E13, E23, E33]]), -1, 0)
-    principal = np.linalg.eigvalsh(tensors)
-    return float(np.max(principal[:, 2] - principal[:, 0]))
+    return Statics(structure, state, loads, shear, stress, solver.report())

@@ -5,7 +5,7 @@ Finite elements and mesher are imported where they are needed: a look at a case 
 """
 # ruff: noqa: PLC0415
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -13,7 +13,6 @@ import numpy as np
 
 from quietblade import geometry
 from quietblade.case import Case, Finding
-from quietblade.case.materials import IsotropicWords, MooneyRivlinWords, OrthotropicWords
 from quietblade.case.spans import (
     ConstantSpan,
     FormulaSpan,
@@ -22,19 +21,25 @@ from quietblade.case.spans import (
     spanwise_quantity,
 )
 from quietblade.case.tables import BladeWords
-from quietblade.errors import GeometryError, MaterialError
-from quietblade.geometry import Blade, Film, SpanFunction
+from quietblade.errors import GeometryError
+from quietblade.geometry import Blade, Film, SectionFamily, SpanFunction
 from quietblade.typing import FloatArray
 
 if TYPE_CHECKING:
     import ngsolve as ngs
 
+    from quietblade.flow.environment import Environment
     from quietblade.flow.inflow import StripInflow
-    from quietblade.materials.protocols import Material
-    from quietblade.mesh import MeshSpec
+    from quietblade.flow.lifting_line import LiftingLineInflow
+    from quietblade.flow.momentum import MomentumInflow
+    from quietblade.flow.wake import RadialWake
+    from quietblade.mesh import Mesh, MeshSpec
     from quietblade.propulsion.loading import Spin
     from quietblade.vibroacoustics.fluid import Water
     from quietblade.vibroacoustics.radiation import RadiationCondition
+
+REACH = 1.2
+"""The radiation condition is made for this multiple of the band's upper end."""
 
 SPANWISE = ("chord", "thickness", "camber", "blade_angle", "sweep", "rake")
 """Keys of [blade] that are functions of the span."""
@@ -71,7 +76,7 @@ def build_blade(case: Case) -> Blade:
         rake=functions["rake"],
         thickness=functions["thickness"],
         camber=functions["camber"],
-        family=geometry.section_family(case.blade.section),
+        family=_family(case),
         trailing_edge=case.blade.trailing_edge,
         alignment=case.blade.alignment,
     )
@@ -87,6 +92,16 @@ def build_blade(case: Case) -> Blade:
     except GeometryError as error:
         raise case.invalid(_finding(("film", "thickness"), error)) from error
     return blade
+
+
+def _family(case: Case) -> SectionFamily:
+    file = case.files.get("blade.section")
+    if file is None:
+        return geometry.section_family(case.blade.section)
+    try:
+        return geometry.section_from_file(file)
+    except GeometryError as error:
+        raise case.invalid(_finding(("blade", "section"), error)) from error
 
 
 def _bounds_findings(key: str, function: SpanFunction) -> Iterator[Finding]:
@@ -120,72 +135,6 @@ def span_function(words: SpanValue) -> SpanFunction:
             return geometry.formula(formula, scale)
 
 
-def build_materials(case: Case) -> "Mapping[str, Material]":
-    """Make the materials of the regions ``blade`` and ``film`` of the mesh.
-
-    An orthotropic material's axes follow the twist of the blade.
-
-    Raises
-    ------
-    InvalidCaseError
-        A material is not admissible.
-    """
-    parts = {"blade": case.blade, "film": case.film}
-    materials = {}
-    for part, words in parts.items():
-        if words is not None:
-            try:
-                materials[part] = _material(case, part, words.material)
-            except MaterialError as error:
-                raise case.invalid(_finding((part, "material"), error)) from error
-    return materials
-
-
-def _material(case: Case, part: str, name: str) -> "Material":
-    from quietblade import materials
-
-    words = case.material(part)
-    match words:
-        case IsotropicWords():
-            return materials.IsotropicSVK(name, words.density, words.E, words.nu)
-        case OrthotropicWords():
-            return materials.OrthotropicSVK(
-                name,
-                words.density,
-                e1=words.E1, e2=words.E2, e3=words.E3,
-                g12=words.G12, g23=words.G23, g13=words.G13,
-                nu12=words.ratio(1, 2), nu23=words.ratio(2, 3), nu13=words.ratio(1, 3),
-                axes=materials.ply_axes(
-                    words.ply_angle, *materials.section_directions(blade_angle_field(case))
-                ),
-            )  # fmt: skip
-        case MooneyRivlinWords():
-            return materials.MooneyRivlin(
-                name,
-                words.density,
-                words.c10,
-                words.c01,
-                words.bulk_modulus,
-                words.loss_factor,
-            )
-
-
-def blade_angle_field(case: Case) -> "float | ngs.CoefficientFunction":
-    """Blade angle [rad] as a function of place in C0; a number where it is constant."""
-    if isinstance(case.blade.blade_angle, ConstantSpan):
-        return case.blade.blade_angle.value
-    import ngsolve as ngs
-
-    # piecewise linear: a spline of order 2 whose i-th value stands on knot i + 1; one knot more
-    # at each end, because nodes of the root and the tip are only nearly there
-    values = span_function(case.blade.blade_angle)(_STATIONS)
-    radius = case.blade.hub_radius + case.blade.span * _STATIONS
-    step = radius[1] - radius[0]
-    knots = [radius[0] - 2.0 * step, radius[0] - step, *radius, radius[-1] + step]
-    ends = [values[0], *values, values[-1], values[-1]]
-    return ngs.BSpline(2, [float(z) for z in knots], [float(v) for v in ends])(ngs.z)
-
-
 def sphere(case: Case) -> tuple[FloatArray, float]:
     """Centre (3,) and radius of the water sphere [m]."""
     centre = case.acoustics.sphere_centre
@@ -217,15 +166,40 @@ def mesh_spec(case: Case) -> "MeshSpec":
     )
 
 
-def inflow(case: Case) -> "StripInflow":
+def inflow(case: Case) -> "StripInflow | LiftingLineInflow | MomentumInflow":
     """Water that meets the sections."""
-    from quietblade.flow.inflow import StripInflow
+    from quietblade.flow import LiftingLineInflow, MomentumInflow, StripInflow
 
-    return StripInflow(
-        case.flow.speed,
-        case.flow.rotation,
-        case.water.density,
-        case.water.kinematic_viscosity,
+    flow = case.flow
+    stream = (
+        flow.speed, flow.rotation, case.water.density, case.water.kinematic_viscosity,
+        wake(case), flow.blades,
+    )  # fmt: skip
+    match flow.inflow:
+        case "none":
+            return StripInflow(*stream)
+        case "lifting-line":
+            return LiftingLineInflow(*stream, root=flow.root, control=flow.control)
+        case "momentum":
+            return MomentumInflow(*stream)
+
+
+def wake(case: Case) -> "RadialWake | None":
+    """Mean inflow along the radius, if the case has one."""
+    from quietblade.flow import radial_wake
+
+    words = case.flow.wake
+    return None if words is None else radial_wake(words.radius, words.axial, words.tangential)
+
+
+def environment(case: Case) -> "Environment":
+    """Say what decides stall and cavitation besides the loads."""
+    from quietblade.flow import Environment
+
+    return Environment(
+        depth=case.flow.depth,
+        atmospheric_pressure=case.flow.atmospheric_pressure,
+        vapour_pressure=case.water.vapour_pressure,
     )
 
 
@@ -243,11 +217,35 @@ def water(case: Case) -> "Water":
     return Water(case.water.density, case.water.sound_speed)
 
 
-def radiation(case: Case) -> "RadiationCondition":
-    """Radiation condition on the outer sphere."""
-    from quietblade.vibroacoustics.radiation import Bgt1
+def radiation(case: Case, mesh: "Mesh", motion: "ngs.GridFunction | None") -> "RadiationCondition":
+    """Radiation condition on the outer sphere, exact up to the degree that the blade needs.
 
-    return {"bgt1": Bgt1}[case.acoustics.radiation]()
+    Raises
+    ------
+    InvalidCaseError
+        The blade is too close to the sphere.
+    """
+    from quietblade.vibroacoustics.dtn import fitted_dtn
+    from quietblade.vibroacoustics.radiation import Bgt1, Bgt2
+
+    match case.acoustics.radiation:
+        case "bgt1":
+            return Bgt1()
+        case "bgt2":
+            return Bgt2()
+        case "dtn":
+            try:
+                return fitted_dtn(
+                    mesh.fem,
+                    REACH * case.acoustics.band[1],
+                    sound_speed=case.water.sound_speed,
+                    radius=mesh.radius,
+                    accuracy=case.acoustics.radiation_accuracy,
+                    motion=motion,
+                )
+            except ValueError as error:
+                finding = Finding(("acoustics", "sphere_radius"), str(error), "Enlarge the sphere")
+                raise case.invalid(finding) from error
 
 
 def base_frequencies(case: Case) -> FloatArray:
@@ -257,7 +255,7 @@ def base_frequencies(case: Case) -> FloatArray:
     return np.linspace(low, high, intervals + 1)
 
 
-def _finding(path: tuple[str, ...], error: GeometryError | MaterialError) -> Finding:
+def _finding(path: tuple[str, ...], error: GeometryError) -> Finding:
     """Take the subject and the remedy off a message of the form ``subject: fault; remedy``."""
     text = str(error).removeprefix("blade: ").removeprefix("film: ")
     if path == ("blade",) and (key := text.split(" ", 1)[0]) in SPANWISE:

@@ -22,11 +22,10 @@ from quietblade.vibroacoustics.complex_modes import ComplexModes, complex_modes
 from quietblade.vibroacoustics.excitation import pressure_force
 from quietblade.vibroacoustics.grid import refined_grid
 from quietblade.vibroacoustics.modes import WetModes, wet_modes
-from quietblade.vibroacoustics.multipoles import Multipoles, SurfaceSources
+from quietblade.vibroacoustics.multipoles import SurfaceSources
 from quietblade.vibroacoustics.naming import Naming, name_modes
 from quietblade.vibroacoustics.operators import Operators, build_operators
-from quietblade.vibroacoustics.power import PowerBudget, power_budget
-from quietblade.vibroacoustics.sweep import Response, solve_response
+from quietblade.vibroacoustics.reduced import ReducedSweep, reduce_system
 
 ABOVE_BAND = 1.2
 """Wet modes are sought up to this multiple of the band's upper end, so that a mode that the
@@ -64,6 +63,8 @@ class Vibration:
         Names of the modes by that motion.
     damped : ComplexModes
         Modes of the band with loss, compressibility and radiation.
+    sweep : ReducedSweep or None
+        Certified reduced model of the band, unless the case asks for a direct sweep.
     solver : SolverReport
         What the solvers did for the modes.
     notices : tuple of Notice
@@ -80,27 +81,9 @@ class Vibration:
     masses: FloatArray
     naming: Naming
     damped: ComplexModes
+    sweep: ReducedSweep | None
     solver: SolverReport
     notices: tuple[Notice, ...]
-
-
-@dataclass(frozen=True, eq=False)
-class Sound:
-    """Response over frequency and where its power goes.
-
-    Attributes
-    ----------
-    response : Response
-        Solutions at the frequencies that could be solved, with residuals.
-    budget : PowerBudget
-        Injected, radiated and dissipated power [W].
-    multipoles : Multipoles
-        Outgoing waves by the Kirchhoff-Helmholtz integral.
-    """
-
-    response: Response
-    budget: PowerBudget
-    multipoles: Multipoles
 
 
 def solve_vibration(
@@ -120,21 +103,32 @@ def solve_vibration(
         operators = build_operators(
             mesh.fem,
             stiffness=tangent.stiffness(case.acoustics.tangent),
-            loss={"film": tangent.loss(case.acoustics.loss)},
+            loss=tangent.losses(case.acoustics.loss),
             mass=tangent.mass,
             water=translate.water(case),
             radius=mesh.radius,
             motion=field,
-            condition=translate.radiation(case),
+            condition=translate.radiation(case, mesh, field),
         )
         force = pressure_force(mesh.fem, case.excitation.pressure, motion=field)
         sources = SurfaceSources.of(mesh.fem, mesh.basis, operators, motion=field)
     positions = mesh.nodes if motion is None else mesh.nodes + motion.displacement
     progress(name, 0.2, "matrices assembled")
-    exact = _solver(case, precision="double")
+    exact = symmetric_solver(case, precision="double")
     low, high = case.acoustics.band
+    load = operators.right_hand_side(force)
     modes = wet_modes(operators, ABOVE_BAND * high, solver=exact, progress=progress)
-    progress(name, 0.6, f"{len(modes.frequency)} wet modes")
+    progress(name, 0.5, f"{len(modes.frequency)} wet modes")
+    sweep = None
+    if case.acoustics.sweep == "reduced":
+        sweep = reduce_system(
+            operators,
+            load,
+            translate.base_frequencies(case),
+            tolerance=case.acoustics.accuracy,
+            solver=symmetric_solver(case),
+            progress=progress,
+        )
     solid = mesh.basis.nodes_of("|".join(region for region in mesh.cells if region != "water"))
     s, xi, _ = blade.locate(mesh.nodes[solid])
     axes = _section_axes(blade, s, statics if motion is not None else None)
@@ -142,11 +136,19 @@ def solve_vibration(
     shapes = np.einsum("nai,mni->mna", axes, moved)
     masses = _nodal_masses(mesh, operators)[solid]
     reach = (low / 1.02, high * 1.02)
-    damped = complex_modes(operators, modes, reach, solver=_solver(case), progress=progress)
+    damped = complex_modes(
+        operators,
+        modes,
+        reach,
+        solver=symmetric_solver(case),
+        space=sweep.model.space if sweep else None,
+        factor=sweep.factor if sweep else None,
+        progress=progress,
+    )
     return Vibration(
         name=name,
         operators=operators,
-        load=operators.right_hand_side(force),
+        load=load,
         area=_area(mesh, positions),
         sources=sources,
         positions=positions,
@@ -155,8 +157,10 @@ def solve_vibration(
         masses=masses,
         naming=name_modes(s, xi, shapes, masses),
         damped=damped,
+        sweep=sweep.without_factor() if sweep else None,
         solver=exact.report(),
         notices=(
+            *tangent.notices,
             *modes.notices,
             *damped.notices,
             *_coriolis(case, modes),
@@ -178,21 +182,8 @@ def frequencies(case: Case, vibrations: list[Vibration]) -> FloatArray:
     )
 
 
-def solve_sound(
-    case: Case, vibration: Vibration, frequency: FloatArray, progress: Progress
-) -> Sound:
-    """Sweep the band with a direct solve at each frequency, and find the powers."""
-    operators = vibration.operators
-    response = solve_response(
-        operators, frequency, vibration.load, solver=_solver(case), progress=progress
-    )
-    assert response.solution is not None  # nothing observed: the solutions are kept
-    budget = power_budget(operators, response.omega, response.solution, vibration.load)
-    multipoles = vibration.sources.multipoles(response.omega, response.solution)
-    return Sound(response, budget, multipoles)
-
-
-def _solver(case: Case, *, precision: Precision | None = None) -> SolverChain:
+def symmetric_solver(case: Case, *, precision: Precision | None = None) -> SolverChain:
+    """Make the solver of the case for systems of step 2."""
     return make_solver(
         case.solver.name,
         precision=precision or case.solver.precision,

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from quietblade.errors import Notice, SolverError
-from quietblade.linalg import SparseSolver, make_solver
+from quietblade.linalg import Factorization, SparseSolver, make_solver
 from quietblade.typing import BoolArray, ComplexArray, FloatArray, IntArray, Progress, silent
 from quietblade.vibroacoustics.modes import WetModes, unknowns
 from quietblade.vibroacoustics.operators import Operators
@@ -74,6 +74,8 @@ def complex_modes(
     band: tuple[float, float],
     *,
     solver: SparseSolver | None = None,
+    space: Projection | None = None,
+    factor: Factorization | None = None,
     tolerance: float = 1e-8,
     iterations: int = 8,
     progress: Progress = silent,
@@ -83,9 +85,8 @@ def complex_modes(
     Residual inverse iteration (A. Neumaier, SIAM J. Numer. Anal. 22 (1985) 914-923) of a group of
     modes at once, with the eigenproblem solved anew on the space of all vectors so far (H. Voss,
     BIT 44 (2004) 387-401).  The space holds all real modes from the beginning, so that close and
-    coupled modes do not disturb each other, and one factorisation serves a group.  A radiation
-    condition whose factors are not of second degree in omega limits what can be reached; the
-    residual tells.
+    coupled modes do not disturb each other, and one factorisation serves a group.  Factors may
+    depend on omega in any smooth way, as those of frequency-dependent moduli and of the sphere do.
 
     Parameters
     ----------
@@ -97,6 +98,11 @@ def complex_modes(
         Lowest and highest real frequency [Hz] of the modes to refine.
     solver : SparseSolver, optional
         Symmetric.
+    space : Projection, optional
+        Space to start from besides the real modes, such as that of a reduced model of the band.
+    factor : Factorization, optional
+        Of A at a frequency of the band: it then serves all modes together, and only those that it
+        does not bring to the tolerance are factored for again.
     tolerance : float
         Largest `ComplexModes.residual` of a converged mode; Omega is then good to its square.
     iterations : int
@@ -108,16 +114,17 @@ def complex_modes(
     rows = np.flatnonzero((modes.frequency >= band[0]) & (modes.frequency <= band[1]))
     rows = rows[modes.frequency[rows] > 0.0]
     starts = unknowns(modes, operators)
-    space = Projection(operators)
+    space = Projection(operators) if space is None else space.copy()
     space.extend(starts[modes.frequency > 0.0])
     found: list[_Mode] = []
-    for group in _groups(modes.frequency[rows]):
+    groups = _groups(modes.frequency[rows]) if factor is None else [slice(0, len(rows))]
+    for group in groups if len(rows) else []:
         members = rows[group]
         low, high = modes.frequency[members[0]], modes.frequency[members[-1]]
         progress("complex modes", len(found) / len(rows), f"{low:.4g} to {high:.4g} Hz")
         omega = 2.0 * np.pi * modes.frequency[members]
         search = _Search(operators, space.copy(), omega, starts[members], tolerance)
-        found += search.run(chosen, iterations)
+        found += search.run(chosen, factor, iterations)
     return _collected(operators, rows, found, tolerance)
 
 
@@ -161,15 +168,20 @@ class _Search:
         self._overlap = np.zeros(len(start))
         self._change = np.full(len(start), np.inf)
 
-    def run(self, solver: SparseSolver, iterations: int) -> list[_Mode]:
+    def run(
+        self, solver: SparseSolver, factor: Factorization | None, iterations: int
+    ) -> list[_Mode]:
         """Iterate with one factorisation, then with one more for each mode that needs it."""
         failure = ""
         try:
             self._renew()
-            self._iterate(solver, complex(np.mean(self._omega.real)), iterations)
+            if factor is None:
+                factor = self._factored(solver, complex(np.mean(self._omega.real)))
+            self._iterate(factor, iterations)
+            del factor
             for index in np.flatnonzero(self._change > self._tolerance):
                 if self._change[index] > self._tolerance:
-                    self._iterate(solver, complex(self._omega[index]), iterations)
+                    self._iterate(self._factored(solver, complex(self._omega[index])), iterations)
         except SolverError as error:
             failure = str(error)
         return [
@@ -183,8 +195,10 @@ class _Search:
             for index in range(len(self._omega))
         ]
 
-    def _iterate(self, solver: SparseSolver, omega: complex, iterations: int) -> None:
-        factor = solver.factor(self._operators.at(_ASIDE * omega))
+    def _factored(self, solver: SparseSolver, omega: complex) -> Factorization:
+        return solver.factor(self._operators.at(_ASIDE * omega))
+
+    def _iterate(self, factor: Factorization, iterations: int) -> None:
         for _ in range(iterations):
             active = np.flatnonzero(self._change > self._tolerance)
             vectors = [self._space.lift(self._coordinates[index]) for index in active]
@@ -219,8 +233,8 @@ class _Search:
         pairs = zip(*linear_sum_assignment(alike - distance, maximize=True), strict=True)
         for index, column in pairs:
             if self._change[index] > self._tolerance:
-                self._omega[index] = values[column]
-                self._coordinates[index] = coordinates[column]
+                omega, refined = self._space.refined(values[column], coordinates[column])
+                self._omega[index], self._coordinates[index] = omega, refined
                 self._overlap[index] = alike[index, column]
 
     def _applied(self, omega: complex, x: ComplexArray) -> ComplexArray:

@@ -158,3 +158,28 @@ def compressibility_matrix(
         * ngs.dx(definedon=fem.Materials(FLUID), deformation=motion)
     )
     return csr_of(form.Assemble())
+
+
+def normal_motion_matrix(
+    fem: ngs.Mesh, surface: str = INTERFACE, motion: ngs.GridFunction | None = None
+) -> csr_matrix:
+    """Integral of (u . n) (du . n) over the wetted surface, (V.ndof, V.ndof) [m2].
+
+    Parameters
+    ----------
+    surface : str
+        Name pattern of the boundaries.
+    motion : ngsolve.GridFunction or None
+        Displacement of the whole mesh from C0 to C1 [m]; None integrates on C0.
+    """
+    region = boundary(fem, surface)
+    displacement = ngs.VectorH1(fem, order=2)
+    u, v = displacement.TnT()
+    normal = fluid_normal(fem, region)
+    form = ngs.BilinearForm(displacement, check_unused=False)
+    form += (
+        ngs.InnerProduct(u.Trace(), normal)
+        * ngs.InnerProduct(v.Trace(), normal)
+        * ngs.ds(definedon=region, deformation=motion)
+    )
+    return csr_of(form.Assemble())

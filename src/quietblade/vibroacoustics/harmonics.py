@@ -8,9 +8,9 @@ singular at the poles or at the centre.
 from math import prod
 
 import numpy as np
-from scipy.special import factorial, spherical_jn
+from scipy.special import factorial, spherical_jn, spherical_yn
 
-from quietblade.typing import FloatArray
+from quietblade.typing import ComplexArray, FloatArray
 
 
 def solid_harmonics(points: FloatArray, degree: int) -> tuple[FloatArray, FloatArray]:
@@ -58,6 +58,11 @@ def solid_harmonics(points: FloatArray, degree: int) -> tuple[FloatArray, FloatA
             values[degree - m] = norm * polynomials[m] * circular[m].imag
             gradients[degree - m] = norm * wave.imag
     return values, gradients
+
+
+def outgoing(degree: int, z: FloatArray) -> ComplexArray:
+    """Spherical Hankel function of the second kind, h_l(z): a wave that goes out."""
+    return np.asarray(spherical_jn(degree, z) - 1j * spherical_yn(degree, z))
 
 
 def radial_factors(

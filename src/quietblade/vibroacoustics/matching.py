@@ -1,13 +1,19 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Likeness of mode shapes, and partners between two sets of modes (theory: S2-15)."""
+"""Likeness of mode shapes, and partners between two sets of modes (theory: S2-15, S2-56)."""
 
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 from scipy.sparse import csr_matrix
+from scipy.sparse.linalg import LinearOperator
 
+from quietblade.linalg import SparseSolver, make_solver
 from quietblade.typing import AnyArray, FloatArray, IntArray
+from quietblade.vibroacoustics.operators import Operators
+
+Product = csr_matrix | LinearOperator
+"""A symmetric matrix, or something that multiplies like one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,7 +35,52 @@ class Match:
     table: FloatArray
 
 
-def assurance(a: AnyArray, b: AnyArray, product: csr_matrix) -> FloatArray:
+def wet_mass(operators: Operators, *, solver: SparseSolver | None = None) -> LinearOperator:
+    """Mass of the structure and of the water that moves with it, M + C H'^-1 C^T (theory: S2-13).
+
+    One factorisation of H', that of incompressible water without end, serves all products.
+
+    Parameters
+    ----------
+    operators : Operators
+        With the static exterior.
+    solver : SparseSolver, optional
+        Symmetric.
+
+    Returns
+    -------
+    (n, n) LinearOperator
+        On all unknowns; only those of the displacement count.
+    """
+    if operators.exterior is None:
+        raise ValueError("the added mass needs the static exterior (operators.exterior)")
+    chosen = make_solver(precision="double") if solver is None else solver
+    u, water = operators.blocks.u, operators.blocks.water
+    own = operators.terms["M"][u][:, u]
+    coupling = operators.terms["C"][u][:, water]
+    factor = None
+    if len(water):
+        inertia = operators.terms["H"] + operators.exterior
+        factor = chosen.factor(csr_matrix(inertia[water][:, water]))
+
+    def moved(columns: AnyArray) -> AnyArray:
+        part = columns[u]
+        momenta = np.zeros_like(columns, dtype=np.result_type(columns, float))
+        momenta[u] = own @ part
+        if factor is not None:
+            flux = coupling.T @ part
+            # one real factor: real and imaginary parts are solved for side by side
+            pair = np.stack([flux.real, flux.imag], axis=-1).reshape(len(water), -1)
+            both = factor.solve(pair).reshape(*flux.shape, 2)
+            answer = both[..., 0] + 1j * both[..., 1] if np.iscomplexobj(flux) else both[..., 0]
+            momenta[u] += coupling @ answer
+        return momenta
+
+    size = operators.size
+    return LinearOperator((size, size), matvec=moved, matmat=moved, dtype=np.dtype(float))
+
+
+def assurance(a: AnyArray, b: AnyArray, product: Product) -> FloatArray:
     """Modal assurance |a^H P b|^2 / ((a^H P a) (b^H P b)) of each pair (theory: S2-15).
 
     Parameters
@@ -37,8 +88,9 @@ def assurance(a: AnyArray, b: AnyArray, product: csr_matrix) -> FloatArray:
     a : (n_a, n) array
     b : (n_b, n) array
         Real or complex vectors, one a row.
-    product : (n, n) csr_matrix
-        Mass of the structure; it leaves film pressure and potential out of account.
+    product : (n, n) csr_matrix or LinearOperator
+        Mass of the structure, or with the water's (`wet_mass`); it leaves film pressure and
+        potential out of account.
 
     Returns
     -------
@@ -53,7 +105,26 @@ def assurance(a: AnyArray, b: AnyArray, product: csr_matrix) -> FloatArray:
     return np.asarray(np.divide(overlap, scale, out=np.zeros_like(scale), where=scale > 0.0))
 
 
-def match(a: AnyArray, b: AnyArray, product: csr_matrix, *, least: float = 0.3) -> Match:
+def participation(response: AnyArray, modes: AnyArray, product: Product) -> FloatArray:
+    """Share of each mode in the kinetic energy of a response (theory: S2-57).
+
+    Parameters
+    ----------
+    response : (f, n) array
+        Solutions, one a row.
+    modes : (m, n) array
+        Real modes; orthogonal in the product, so that shares add up to one at most.
+    product : (n, n) csr_matrix or LinearOperator
+        `wet_mass` for wet modes.
+
+    Returns
+    -------
+    (f, m) array
+    """
+    return assurance(response, modes, product)
+
+
+def match(a: AnyArray, b: AnyArray, product: Product, *, least: float = 0.3) -> Match:
     """One-to-one partners with the largest sum of modal assurances.
 
     Parameters

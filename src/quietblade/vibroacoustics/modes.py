@@ -10,7 +10,8 @@ Vectors with H' phi = C^T u satisfy x^T B x = u^T (M + C H'^-1 C^T) u > 0, and P
 again such a vector, so that Lanczos' method needs the factors of P(sigma) only, not those of H'.
 """
 
-from dataclasses import dataclass, field
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.sparse import csr_matrix
@@ -19,6 +20,7 @@ from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigsh
 from quietblade.errors import ConvergenceError, Notice, SolverError
 from quietblade.linalg import Factorization, SparseSolver, make_solver
 from quietblade.typing import AnyArray, FloatArray, IntArray, Progress, silent
+from quietblade.vibroacoustics.loss import STREAM, Loss, Lossy, loss_term, lossy_parts
 from quietblade.vibroacoustics.operators import Operators
 
 _TOLERANCE = 1e-11  # of the solves inside Lanczos' method: they bound the modes' accuracy
@@ -38,7 +40,8 @@ class WetModes:
         Displacement, film pressure, and phi in the place of the potential psi = i omega phi, on
         the free unknowns; unit modal mass u^T (M + C H'^-1 C^T) u.
     loss_factor : (m,) array
-        Loss of the material, x^T L x / x^T K x (theory: S2-14); nan for a rigid motion.
+        Loss of the material, x^T L x / x^T K x (theory: S2-14), with the complex moduli at the
+        mode's frequency; nan for a rigid motion.
     residual : (m,) array
         ``||P(s) x|| / ||s B x||``, with the least elastic s for that of a rigid motion.
     highest : float
@@ -59,6 +62,8 @@ class WetModes:
     count: int
     solver: str
     notices: tuple[Notice, ...] = field(default=())
+    losses: Mapping[str, FloatArray] = field(default_factory=dict)
+    """Share of each lossy region in ``loss_factor``, (m,)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,7 +77,7 @@ class Pencil:
     film : (n_p,) int array
         Unknowns of film pressure: without mass, and one negative pivot each.
     water : (n_psi,) int array
-        Unknowns of potential, empty in vacuo.
+        Unknowns of the water, empty in vacuo.
     """
 
     stiffness: csr_matrix
@@ -85,8 +90,16 @@ class Pencil:
         return csr_matrix(self.stiffness - s * self.inertia)
 
 
-def wet_pencil(operators: Operators) -> Pencil:
+def wet_pencil(operators: Operators, moduli_at: float = 0.0) -> Pencil:
     """Pencil of the blade in incompressible water without end (theory: S2-13).
+
+    The motion that a stream damps, and a root that is held, are left out: they come last.
+
+    Parameters
+    ----------
+    operators : Operators
+    moduli_at : float
+        Frequency [Hz] whose storage moduli count.
 
     Raises
     ------
@@ -96,23 +109,39 @@ def wet_pencil(operators: Operators) -> Pencil:
     if operators.exterior is None:
         raise ValueError("wet modes need the static exterior of the sphere (operators.exterior)")
     terms, blocks = operators.terms, operators.blocks
-    inertia = terms["M"] + terms["C"] - terms["H"] - operators.exterior
-    return Pencil(terms["K"], csr_matrix(inertia), blocks.p, blocks.psi)
+    inertia = csr_matrix(terms["M"] + terms["C"] - terms["H"] - operators.exterior)
+    kept = _wet_unknowns(operators)
+    stiffness = operators.stiffness(2.0 * np.pi * moduli_at)
+    return Pencil(stiffness[kept][:, kept], inertia[kept][:, kept], blocks.p, blocks.water)
 
 
-def dry_pencil(operators: Operators) -> Pencil:
-    """Pencil of the blade in vacuo, on displacement and film pressure."""
+def dry_pencil(operators: Operators, moduli_at: float = 0.0) -> Pencil:
+    """Pencil of the blade in vacuo, on its own unknowns (`_dry_unknowns`)."""
+    solid, blocks = _dry_unknowns(operators), operators.blocks
+    stiffness = operators.stiffness(2.0 * np.pi * moduli_at)[solid][:, solid]
+    film = np.flatnonzero(np.isin(solid, blocks.p))
+    return Pencil(
+        stiffness, operators.terms["M"][solid][:, solid], film, np.zeros(0, dtype=np.int64)
+    )
+
+
+def _wet_unknowns(operators: Operators) -> IntArray:
+    """All but the strips in a stream, and but a root that is held."""
     blocks = operators.blocks
-    solid = np.concatenate([blocks.u, blocks.p])
-    stiffness, mass = (csr_matrix(operators.terms[name][solid][:, solid]) for name in "KM")
-    film = len(blocks.u) + np.arange(len(blocks.p))
-    return Pencil(stiffness, mass, film, np.zeros(0, dtype=np.int64))
+    held = blocks.held if len(blocks.reaction) else blocks.reaction
+    return np.arange(operators.size - len(blocks.strips) - len(held))
+
+
+def _dry_unknowns(operators: Operators) -> IntArray:
+    kept, blocks = _wet_unknowns(operators), operators.blocks
+    return kept[np.isin(kept, np.concatenate([blocks.u, blocks.p, blocks.root]))]
 
 
 def wet_modes(
     operators: Operators,
     highest: float,
     *,
+    moduli_at: float = 0.0,
     solver: SparseSolver | None = None,
     progress: Progress = silent,
 ) -> WetModes:
@@ -124,6 +153,9 @@ def wet_modes(
         With the static exterior.
     highest : float
         Frequency [Hz] up to which no mode may be missing.
+    moduli_at : float
+        Frequency [Hz] whose storage moduli count, best near the modes that matter; at rest by
+        default, which changes nothing where moduli do not depend on frequency.
     solver : SparseSolver, optional
         Symmetric, in double precision: its inertia counts the modes.
     progress : Progress
@@ -136,34 +168,49 @@ def wet_modes(
     SolverError
         If the solver gives no inertia.
     """
-    return solve_modes(
-        wet_pencil(operators), operators.terms["L"], highest, solver=solver, progress=progress
-    )
+    kept = _wet_unknowns(operators)
+    modes = solve_modes(
+        wet_pencil(operators, moduli_at), _loss_on(operators, kept), highest,
+        solver=solver, progress=progress,
+    )  # fmt: skip
+    return _spread(modes, kept, operators.size)
 
 
 def dry_modes(
     operators: Operators,
     highest: float,
     *,
+    moduli_at: float = 0.0,
     solver: SparseSolver | None = None,
     progress: Progress = silent,
 ) -> WetModes:
     """All real modes of the blade in vacuo below a frequency, as `wet_modes`; phi is zero."""
-    pencil, blocks = dry_pencil(operators), operators.blocks
-    solid = np.concatenate([blocks.u, blocks.p])
-    loss = csr_matrix(operators.terms["L"][solid][:, solid])
-    modes = solve_modes(pencil, loss, highest, solver=solver, progress=progress)
-    vectors = np.zeros((len(modes.frequency), operators.size))
-    vectors[:, solid] = modes.vectors
-    return WetModes(
-        modes.frequency, vectors, modes.loss_factor, modes.residual, modes.highest,
-        modes.count, modes.solver, modes.notices,
+    solid = _dry_unknowns(operators)
+    modes = solve_modes(
+        dry_pencil(operators, moduli_at), _loss_on(operators, solid), highest,
+        solver=solver, progress=progress,
     )  # fmt: skip
+    return _spread(modes, solid, operators.size)
+
+
+def _loss_on(operators: Operators, kept: IntArray) -> Loss:
+    """Lossy regions on some of the unknowns."""
+    return {
+        region: Lossy(operators.terms[loss_term(region)][kept][:, kept], ratio)
+        for region, ratio in operators.moduli.items()
+    }
+
+
+def _spread(modes: WetModes, kept: IntArray, size: int) -> WetModes:
+    """Modes on all unknowns, zero where they were not solved for."""
+    vectors = np.zeros((len(modes.frequency), size))
+    vectors[:, kept] = modes.vectors
+    return replace(modes, vectors=vectors)
 
 
 def solve_modes(
     pencil: Pencil,
-    loss: csr_matrix,
+    loss: Loss,
     highest: float,
     *,
     solver: SparseSolver | None = None,
@@ -244,7 +291,7 @@ def _lowest(pencil: Pencil, factor: Factorization, shift: float, count: int) -> 
 
 
 def _judged(
-    pencil: Pencil, loss: csr_matrix, vectors: FloatArray, highest: float, count: int, solver: str
+    pencil: Pencil, loss: Loss, vectors: FloatArray, highest: float, count: int, solver: str
 ) -> WetModes:
     """Sort, scale and check."""
     forces = _times(pencil.stiffness, vectors)
@@ -259,18 +306,24 @@ def _judged(
     defect = np.linalg.norm(forces[order] * scale - s[:, None] * momenta[order] * scale, axis=1)
     size = np.maximum(np.abs(s), floor) * np.linalg.norm(momenta[order] * scale, axis=1)
     _check_complete(x, pencil, s, count, highest)
-    lost = np.einsum("ij,ij->i", x, _times(loss, x))
     elastic = np.abs(s) > floor
-    frequency = np.sign(s) * np.sqrt(np.abs(s)) / (2.0 * np.pi)
+    omega = np.sqrt(np.abs(s))
+    frequency = np.sign(s) * omega / (2.0 * np.pi)
+    losses = {}
+    for region, part in lossy_parts(loss).items():
+        damping = np.array([complex(part.ratio(complex(w))).imag for w in omega])
+        lost = damping * np.einsum("ij,ij->i", x, _times(part.matrix, x))
+        losses[region] = np.divide(lost, s, out=np.full(len(s), np.nan), where=elastic)
     return WetModes(
         frequency=frequency,
         vectors=x,
-        loss_factor=np.divide(lost, s, out=np.full(len(s), np.nan), where=elastic),
+        loss_factor=sum(losses.values(), start=np.where(elastic, 0.0, np.nan)),
         residual=defect / size,
         highest=highest,
         count=count,
         solver=solver,
         notices=_unusual(frequency[elastic]),
+        losses=losses,
     )
 
 
@@ -309,8 +362,14 @@ def _unusual(frequency: FloatArray) -> tuple[Notice, ...]:
 
 
 def unknowns(modes: WetModes, operators: Operators) -> AnyArray:
-    """Vectors in the unknowns of A(omega): psi = i omega phi in the place of phi, complex."""
+    """Vectors in the unknowns of A(omega): psi = i omega phi in the place of phi, complex.
+
+    The motion of the strips that a stream damps follows the displacement.
+    """
     vectors = modes.vectors.astype(complex)
-    omega = 2.0 * np.pi * modes.frequency
-    vectors[:, operators.blocks.psi] *= 1j * omega[:, None]
+    blocks, omega = operators.blocks, 2.0 * np.pi * modes.frequency
+    vectors[:, blocks.water] *= 1j * omega[:, None]
+    if len(blocks.strips):
+        weights = operators.terms[loss_term(STREAM)][blocks.strips][:, blocks.u]
+        vectors[:, blocks.strips] = (weights @ vectors[:, blocks.u].T).T
     return vectors

@@ -7,7 +7,7 @@ that an approximate condition on the outer sphere sends back: a second, independ
 power (theory: S2-9).
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import isqrt
 from typing import Self
 
@@ -19,7 +19,7 @@ from quietblade.errors import Notice
 from quietblade.mesh.nodal import NodalBasis
 from quietblade.typing import AnyArray, ComplexArray, FloatArray, IntArray
 from quietblade.vibroacoustics.fluid import Water, coupling_matrix
-from quietblade.vibroacoustics.harmonics import radial_factors, solid_harmonics
+from quietblade.vibroacoustics.harmonics import outgoing, radial_factors, solid_harmonics
 from quietblade.vibroacoustics.operators import Operators, product_space
 
 CLOSED_SURFACE = "wet|excited|root"
@@ -38,15 +38,20 @@ class Multipoles:
     amplitudes : (f, (degree + 1)^2) complex array
         a_lm, real orthonormal harmonics, l = 0..degree and m = -l..l inside [m2/s].
     water : Water
-    tail : (f,) array
-        Share of the two last degrees in the power: what the cut-off may have left out.
+    reach : float
+        Distance from the centre beyond which the sum is the field [m].
     """
 
     center: FloatArray
     omega: FloatArray
     amplitudes: ComplexArray
     water: Water
-    tail: FloatArray
+    reach: float
+
+    @property
+    def tail(self) -> FloatArray:
+        """Share of the two last degrees in the power (f,): what the cut-off may have left out."""
+        return np.asarray(self.power_by_degree[:, -2:].sum(axis=-1) / self.power)
 
     @property
     def degree(self) -> int:
@@ -65,6 +70,11 @@ class Multipoles:
     def power(self) -> FloatArray:
         """Radiated power (f,) [W]."""
         return np.asarray(self.power_by_degree.sum(axis=-1))
+
+    @property
+    def share(self) -> FloatArray:
+        """Share of each degree in the power, (f, degree + 1): monopole, dipole, quadrupole, ..."""
+        return np.asarray(self.power_by_degree / self.power[:, None])
 
     def far_field(self, directions: FloatArray) -> ComplexArray:
         """Far pressure times distance, p r exp(i k r) for r to infinity [Pa m].
@@ -85,6 +95,39 @@ class Multipoles:
             part = self.amplitudes[:, degree**2 : (degree + 1) ** 2]
             pressure += 1j**degree * (part @ harmonics)
         return self.water.density * self.water.sound_speed * pressure
+
+    def pressure(self, points: FloatArray) -> ComplexArray:
+        """Sound pressure at points outside the ball that holds the body [Pa].
+
+        Parameters
+        ----------
+        points : (p, 3) array
+            [m]
+
+        Returns
+        -------
+        (f, p) complex array
+            -i omega rho times the sum of a_lm h_l(k r) Y_lm (theory: S2-46).
+
+        Raises
+        ------
+        ValueError
+            If a point lies within `reach` of the centre, where the sum need not be the field.
+        """
+        away = points - self.center
+        distance = np.linalg.norm(away, axis=1)
+        if distance.min() < self.reach * (1.0 - 1e-9):
+            raise ValueError(
+                f"multipoles: a point at {distance.min():.4g} m from the centre is inside the ball "
+                f"of {self.reach:.4g} m that holds the body; use SurfaceSources.pressure there"
+            )
+        kr = self.omega[:, None] / self.water.sound_speed * distance
+        potential = np.zeros(kr.shape, dtype=np.complex128)
+        for degree in range(self.degree + 1):
+            harmonics, _ = solid_harmonics(away / distance[:, None], degree)
+            part = self.amplitudes[:, degree**2 : (degree + 1) ** 2]
+            potential += outgoing(degree, kr) * (part @ harmonics)
+        return np.asarray(-1j * self.omega[:, None] * self.water.density * potential)
 
     def notices(self, limit: float = 1e-2) -> list[Notice]:
         """Says where the sum over degrees has not converged."""
@@ -160,13 +203,18 @@ class SurfaceSources:
         # Full numbering: the gradient of a wave does not vanish on clamped nodes.
         coupling = csr_matrix(coupling_matrix(fem, water, surface, motion) / water.density)
         space = product_space(fem)
-        to_free = _selection(operators.free, space.ndof)
+        to_free = _selection(operators.free, space.ndof, operators.size)
         to_nodes = basis.interpolation[:, nodes].T
         flux = to_nodes @ coupling.T @ to_free[: coupling.shape[0]]
         potential = to_free[space.Range(2).start :]
         rows = np.split(np.arange(coupling.shape[0]), 3)
         x, y, z = (csr_matrix(to_nodes @ coupling[row] @ potential) for row in rows)
         return cls(points, np.asarray(middle), csr_matrix(flux), (x, y, z), water)
+
+    def on(self, columns: FloatArray) -> "SurfaceSources":
+        """Sources as functions of the coordinates of vectors (k, n), instead of the unknowns."""
+        flux, *doublet = (csr_matrix(part @ columns.T) for part in (self.flux, *self.doublet))
+        return replace(self, flux=flux, doublet=(doublet[0], doublet[1], doublet[2]))
 
     def multipoles(
         self,
@@ -215,11 +263,46 @@ class SurfaceSources:
             powers.append(np.sum(np.abs(found[-1]) ** 2, axis=1))
             if degree > 1 and np.all(powers[-1] + powers[-2] < tolerance * sum(powers)):
                 break
-        tail = (powers[-1] + powers[-2]) / sum(powers)
-        return Multipoles(self.center, omega, np.concatenate(found, axis=1), self.water, tail)
+        return Multipoles(self.center, omega, np.concatenate(found, axis=1), self.water, scale)
+
+    def pressure(
+        self, omega: FloatArray, response: ComplexArray, points: FloatArray
+    ) -> ComplexArray:
+        """Sound pressure at points of the water by the Kirchhoff-Helmholtz integral [Pa].
+
+        psi = int (G i omega u . n - psi dG/dn) with G = exp(-i k r)/(4 pi r) (theory: S2-45).  It
+        holds everywhere outside the body, and is accurate a few cells away from it.
+
+        Parameters
+        ----------
+        omega : (f,) array
+            Angular frequencies [rad/s].
+        response : (f, n) array
+            Unknowns.
+        points : (p, 3) array
+            [m]
+
+        Returns
+        -------
+        (f, p) complex array
+        """
+        omega = np.atleast_1d(np.asarray(omega, dtype=np.float64))
+        response = np.atleast_2d(response)
+        velocity = 1j * omega[:, None] * (self.flux @ response.T).T
+        doublet = np.stack([(part @ response.T).T for part in self.doublet], axis=2)
+        potential = np.empty((len(omega), len(points)), dtype=np.complex128)
+        for column, point in enumerate(points):
+            away = self.points - point
+            distance = np.linalg.norm(away, axis=1)
+            phase = 1j * omega[:, None] / self.water.sound_speed
+            green = np.exp(-phase * distance) / (4.0 * np.pi * distance)
+            slope = -(phase + 1.0 / distance) * green / distance
+            along = np.einsum("fnx,nx->fn", doublet, away)
+            potential[:, column] = np.sum(green * velocity - slope * along, axis=1)
+        return -1j * omega[:, None] * self.water.density * potential
 
 
-def _selection(free: IntArray, size: int) -> csr_matrix:
-    """Matrix (size, n) that puts the free unknowns into the full numbering."""
+def _selection(free: IntArray, full: int, size: int) -> csr_matrix:
+    """Matrix (full, size) that puts the free unknowns, the first ones, into the full numbering."""
     ones: AnyArray = np.ones(len(free))
-    return csr_matrix((ones, (free, np.arange(len(free)))), shape=(size, len(free)))
+    return csr_matrix((ones, (free, np.arange(len(free)))), shape=(full, size))

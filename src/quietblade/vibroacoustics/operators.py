@@ -7,7 +7,7 @@ ones are kept: the solid's nodes away from the clamped root, the film's and the 
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import ngsolve as ngs
@@ -15,8 +15,9 @@ import numpy as np
 from scipy.sparse import coo_array, csr_matrix
 
 from quietblade.errors import MeshError
+from quietblade.materials.viscoelastic import ModulusRatio
 from quietblade.mesh.model import INTERFACE
-from quietblade.typing import AnyArray, IntArray
+from quietblade.typing import AnyArray, FloatArray, IntArray
 from quietblade.vibroacoustics.fluid import (
     FLUID,
     Water,
@@ -26,6 +27,7 @@ from quietblade.vibroacoustics.fluid import (
     kinetic_matrix,
     potential_space,
 )
+from quietblade.vibroacoustics.loss import Loss, loss_term, lossy_parts
 from quietblade.vibroacoustics.pattern import CommonPattern
 from quietblade.vibroacoustics.radiation import (
     Bgt1,
@@ -42,29 +44,64 @@ _ROUNDING = 1e-9
 
 @dataclass(frozen=True)
 class Blocks:
-    """Positions of displacement, film pressure and potential among the free unknowns."""
+    """Positions of displacement, film pressure and potential among the unknowns.
+
+    Behind them are the auxiliary unknowns of the radiation condition, h = Y^T psi (theory: S2-44),
+    and those that a moving root (theory: S2-74) and a stream (theory: S2-72) add.
+
+    Attributes
+    ----------
+    u, p, psi, harmonics : int arrays
+        Displacement, film pressure, potential, h.
+    root, reaction : int arrays
+        Sums and differences of the six rigid motions of the root and of what holds it.
+    strips : int array
+        Motion that the stream damps, one a strip.
+    """
 
     u: IntArray
     p: IntArray
     psi: IntArray
+    harmonics: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    root: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    reaction: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    strips: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+
+    @property
+    def water(self) -> IntArray:
+        """Potential and harmonics: what belongs to the water."""
+        return np.concatenate([self.psi, self.harmonics])
+
+    @property
+    def held(self) -> IntArray:
+        """Motion of the root and its reaction."""
+        return np.concatenate([self.root, self.reaction])
+
+    @property
+    def solid(self) -> IntArray:
+        """Everything that does not belong to the water."""
+        return np.concatenate([self.u, self.p, self.held, self.strips])
 
 
 @dataclass(frozen=True)
 class Operators:
-    """A(omega) = K + i L - omega^2 M + i omega C - H + omega^2 G - (i omega + c/R) Q.
+    """A(omega) = K + sum_r (g_r - 1) D_r - omega^2 M + i omega C - H + omega^2 G + radiation.
 
-    The last term stands for the radiation condition, here first-order BGT.
+    For first-order BGT the radiation is -(i omega + c/R) Q.  A term of low rank,
+    g Y Y^T on psi, enters with the unknowns h = Y^T psi as g [[0, Y], [Y^T, -1]] on (psi, h):
+    eliminating h gives it back, energies x^H A x are the same, and A(omega) stays sparse and
+    symmetric (theory: S2-44).
 
     Attributes
     ----------
     terms : mapping of name to (n, n) csr_matrix
-        Real symmetric matrices on the free unknowns: stiffness K (tangent), loss L (with the loss
-        factor), mass M, both coupling blocks C, and of the water H and G (positive), and those of
-        the radiation condition (Q).
+        Real symmetric matrices on the unknowns: stiffness K (tangent), D of each lossy region
+        (`loss_term`), mass M, both coupling blocks C, and of the water H and G (positive), and
+        those of the radiation condition (Q, ...).
     blocks : Blocks
-        Where u, p and psi are among the free unknowns.
-    free : (n,) int array
-        Their numbers in V * P * Q, uncompressed.
+        Where u, p, psi and h are among the unknowns.
+    free : (n - m,) int array
+        Numbers in V * P * Q, uncompressed, of all unknowns but the m last, h.
     first_potential : int
         Number of the first potential unknown in V * P * Q.
     sound_speed, density : float
@@ -73,10 +110,12 @@ class Operators:
         R of the outer sphere [m].
     condition : RadiationCondition
         What is required on the sphere.
-    losses : mapping of name to (n, n) csr_matrix
-        Parts that add up to L, by region; empty if they are not told apart.
+    moduli : mapping of name to ModulusRatio
+        g of each lossy region.  A viscous part, which has i omega D, is one with g = 1 + i omega.
     exterior : (n, n) csr_matrix or None
         Static exterior of the sphere, which real wet modes add to H; not a part of A(omega).
+    center : (3,) array
+        Centre of the outer sphere [m].
     """
 
     terms: Mapping[str, csr_matrix]
@@ -87,13 +126,14 @@ class Operators:
     density: float
     radius: float
     condition: RadiationCondition = field(default_factory=Bgt1)
-    losses: Mapping[str, csr_matrix] = field(default_factory=dict)
+    moduli: Mapping[str, ModulusRatio] = field(default_factory=dict)
     exterior: csr_matrix | None = None
+    center: FloatArray = field(default_factory=lambda: np.zeros(3))
 
     @property
     def size(self) -> int:
-        """Number of free unknowns."""
-        return len(self.free)
+        """Number of unknowns n, the auxiliary ones included."""
+        return int(self.terms["K"].shape[0])
 
     @cached_property
     def pattern(self) -> CommonPattern:
@@ -104,13 +144,29 @@ class Operators:
         """Factor of each term at an angular frequency [rad/s]."""
         return {
             "K": 1.0,
-            "L": 1.0j,
+            **{loss_term(region): ratio(omega) - 1.0 for region, ratio in self.moduli.items()},
             "M": -(omega**2),
             "C": 1.0j * omega,
             "H": -1.0,
             "G": omega**2,
             **self.condition.factors(omega, self.sound_speed, self.radius),
         }
+
+    def stiffness(self, omega: float = 0.0) -> csr_matrix:
+        """Storage stiffness K + sum_r (Re g_r - 1) D_r at an angular frequency [rad/s]."""
+        parts = [
+            (complex(ratio(omega)).real - 1.0) * self.terms[loss_term(region)]
+            for region, ratio in self.moduli.items()
+        ]
+        return csr_matrix(sum(parts, start=self.terms["K"]))
+
+    def loss(self, omega: float) -> csr_matrix:
+        """Loss stiffness L = sum_r Im g_r D_r at an angular frequency [rad/s]."""
+        parts = [
+            complex(ratio(omega)).imag * self.terms[loss_term(region)]
+            for region, ratio in self.moduli.items()
+        ]
+        return csr_matrix(sum(parts, start=csr_matrix(self.terms["K"].shape)))
 
     def at(self, omega: complex) -> csr_matrix:
         """A(omega), complex symmetric, always on the same pattern (theory: S2-7)."""
@@ -172,7 +228,7 @@ def build_operators(
     *,
     stiffness: csr_matrix,
     mass: csr_matrix,
-    loss: csr_matrix | Mapping[str, csr_matrix] | None = None,
+    loss: Loss = None,
     water: Water,
     radius: float,
     motion: ngs.GridFunction | None = None,
@@ -189,8 +245,9 @@ def build_operators(
     stiffness, mass : csr_matrix
         K (tangent) and M of the structure in the full numbering of V * P, or of V if there is no
         film pressure; mass is that of C0.
-    loss : csr_matrix, mapping of name to csr_matrix, or None
-        L, loss factor included, numbered likewise; several parts are added and also kept by name.
+    loss : csr_matrix, mapping of name to csr_matrix or Lossy, or None
+        Lossy regions, numbered likewise: a `Lossy`, or L with a constant loss factor included.
+        One matrix without a name is the region "all".
     water : Water
         Density and sound speed.
     radius : float
@@ -209,18 +266,20 @@ def build_operators(
         If a region is missing, the outer boundary is not the sphere, or it moves.
     """
     condition = Bgt1() if condition is None else condition
-    check_sphere(fem, radius, outer)
+    center = check_sphere(fem, radius, outer)
     if motion is not None:
         _check_still(fem, motion, outer, radius)
     free, blocks = free_unknowns(fem)
     space = product_space(fem)
-    place = _Placement(space.ndof, free)
+    loads = condition.loads(fem, water, outer, radius)
+    blocks = replace(
+        blocks,
+        harmonics=len(free) + np.arange(sum(load.shape[1] for load in loads.values())),
+    )
+    place = _Placement(space.ndof, free, len(blocks.harmonics))
     first_psi = space.Range(2).start
-    named_losses = loss if isinstance(loss, Mapping) else {"all": loss} if loss is not None else {}
     sizes = (space.Range(1).start, first_psi)
-    losses = {
-        name: place(_symmetric(f"loss {name}", part, sizes)) for name, part in named_losses.items()
-    }
+    losses = lossy_parts(loss)
     coupling = place(coupling_matrix(fem, water, wetted, motion), columns=first_psi)
     fluid = {
         "H": kinetic_matrix(fem, water, motion),
@@ -229,15 +288,25 @@ def build_operators(
     }
     terms = {
         "K": place(_symmetric("K", stiffness, sizes)),
-        "L": sum(losses.values(), start=csr_matrix((len(free), len(free)))),
+        **{
+            loss_term(name): place(_symmetric(f"loss {name}", part.matrix, sizes))
+            for name, part in losses.items()
+        },
         "M": place(_symmetric("M", mass, sizes)),
         "C": csr_matrix(coupling + coupling.T),
         **{
             name: place(_symmetric(name, part), first_psi, first_psi)
             for name, part in fluid.items()
         },
+        **place.borders(loads, first_psi),
     }
-    exterior = place(_symmetric("E", static_exterior(fem, water, radius, outer)), *2 * (first_psi,))
+    if loads:
+        at_rest = condition.factors(0.0, water.sound_speed, radius)
+        parts = [-complex(factor).real * terms[name] for name, factor in at_rest.items()]
+        exterior = csr_matrix(sum(parts[1:], start=parts[0]))
+    else:
+        static = _symmetric("E", static_exterior(fem, water, radius, outer))
+        exterior = place(static, first_psi, first_psi)
     return Operators(
         terms,
         blocks,
@@ -247,17 +316,23 @@ def build_operators(
         water.density,
         radius,
         condition,
-        losses if isinstance(loss, Mapping) else {},
+        {name: part.ratio for name, part in losses.items()},
         exterior,
+        center,
     )
 
 
 @dataclass(frozen=True)
 class _Placement:
-    """Puts a block of the full numbering into the matrix of the free unknowns."""
+    """Puts a block of the full numbering into the matrix of the unknowns."""
 
     full: int
     free: IntArray
+    harmonics: int
+
+    @property
+    def size(self) -> int:
+        return len(self.free) + self.harmonics
 
     @cached_property
     def position(self) -> IntArray:
@@ -271,8 +346,23 @@ class _Placement:
         row, column = self.position[entries.row + rows], self.position[entries.col + columns]
         # Forms on a product space store zeros between fields that do not meet.
         kept = (row >= 0) & (column >= 0) & (entries.data != 0.0)
-        n = len(self.free)
-        return csr_matrix((entries.data[kept], (row[kept], column[kept])), shape=(n, n))
+        shape = (self.size, self.size)
+        return csr_matrix((entries.data[kept], (row[kept], column[kept])), shape=shape)
+
+    def borders(self, loads: Mapping[str, csr_matrix], rows: int) -> dict[str, csr_matrix]:
+        """[[0, Y], [Y^T, -1]] of each Y, whose first row is at ``rows``, on unknowns of its own."""
+        terms, first = {}, len(self.free)
+        for name, load in loads.items():
+            entries = coo_array(load)
+            row = self.position[entries.row + rows]
+            kept = (row >= 0) & (entries.data != 0.0)
+            row, column, value = row[kept], first + entries.col[kept], entries.data[kept]
+            own = first + np.arange(load.shape[1])
+            places = np.concatenate([row, column, own]), np.concatenate([column, row, own])
+            values = np.concatenate([value, value, -np.ones(len(own))])
+            terms[name] = csr_matrix((values, places), shape=(self.size, self.size))
+            first += load.shape[1]
+        return terms
 
 
 def _symmetric(name: str, matrix: csr_matrix, sizes: tuple[int, ...] | None = None) -> csr_matrix:

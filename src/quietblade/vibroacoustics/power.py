@@ -7,14 +7,48 @@ beside angular frequencies (...,) [rad/s]; powers have the shape of the frequenc
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from scipy.sparse import csr_matrix
 
+from quietblade.materials.viscoelastic import ModulusRatio
 from quietblade.typing import AnyArray, ComplexArray, FloatArray
-from quietblade.vibroacoustics.operators import Operators
+from quietblade.vibroacoustics.loss import loss_term
+from quietblade.vibroacoustics.operators import Blocks, Operators
+from quietblade.vibroacoustics.radiation import RadiationCondition
 
 REFERENCE_POWER = 1e-12
+
+Matrix = csr_matrix | AnyArray
+
+
+class System(Protocol):
+    """What the powers need to know: `Operators`, or the same terms on a few columns."""
+
+    @property
+    def terms(self) -> Mapping[str, Matrix]:
+        """Terms of A(omega), by name."""
+
+    @property
+    def moduli(self) -> Mapping[str, ModulusRatio]:
+        """Complex modulus of each lossy region."""
+
+    @property
+    def blocks(self) -> Blocks:
+        """Where the fields are."""
+
+    @property
+    def condition(self) -> RadiationCondition:
+        """Condition on the sphere."""
+
+    @property
+    def sound_speed(self) -> float:
+        """Speed of sound [m/s]."""
+
+    @property
+    def radius(self) -> float:
+        """R of the sphere [m]."""
 
 
 @dataclass(frozen=True)
@@ -30,7 +64,8 @@ class PowerBudget:
     surface : array
         Power that enters the water through the wetted surface.
     dissipated : array
-        Power lost in the material.
+        Power lost in all lossy regions: in the materials, and to a stream or a shaft if there is
+        one.
     """
 
     injected: FloatArray
@@ -46,14 +81,14 @@ class PowerBudget:
 
 
 def power_budget(
-    operators: Operators, omega: FloatArray, response: ComplexArray, load: AnyArray
+    operators: System, omega: FloatArray, response: ComplexArray, load: AnyArray
 ) -> PowerBudget:
     """All powers of a response to a load (n,) or (..., n)."""
     return PowerBudget(
         injected_power(load, omega, response),
         radiated_power(operators, omega, response),
         surface_power(operators, omega, response),
-        dissipated_power(operators.terms["L"], omega, response),
+        sum(dissipated_by_region(operators, omega, response).values(), start=np.zeros(omega.shape)),
     )
 
 
@@ -69,21 +104,21 @@ def injected_power(load: AnyArray, omega: FloatArray, response: ComplexArray) ->
     return np.asarray(-0.5 * np.asarray(omega) * work.imag)
 
 
-def dissipated_power(loss: csr_matrix, omega: FloatArray, response: ComplexArray) -> FloatArray:
-    """Power lost in the material, omega/2 U^H L U, for L or a part of it."""
-    return 0.5 * np.asarray(omega) * _real_form(loss, response, response)
-
-
 def dissipated_by_region(
-    operators: Operators, omega: FloatArray, response: ComplexArray
+    operators: System, omega: FloatArray, response: ComplexArray
 ) -> Mapping[str, FloatArray]:
-    """Power lost in each named part of the loss matrix."""
+    """Power lost in each lossy region, omega/2 Im(g_r) U^H D_r U (theory: S2-52)."""
+    frequencies = np.asarray(omega, dtype=np.float64)
     return {
-        name: dissipated_power(part, omega, response) for name, part in operators.losses.items()
+        region: 0.5
+        * frequencies
+        * np.reshape([complex(ratio(w)).imag for w in frequencies.flat], frequencies.shape)
+        * _real_form(operators.terms[loss_term(region)], response, response)
+        for region, ratio in operators.moduli.items()
     }
 
 
-def radiated_power(operators: Operators, omega: FloatArray, response: ComplexArray) -> FloatArray:
+def radiated_power(operators: System, omega: FloatArray, response: ComplexArray) -> FloatArray:
     """Power through the outer sphere.
 
     The sphere's part B(omega) of A(omega) lets -omega/2 Im(Psi^H B Psi) pass; for first-order BGT
@@ -101,16 +136,44 @@ def radiated_power(operators: Operators, omega: FloatArray, response: ComplexArr
     return 0.5 * frequencies * power
 
 
-def surface_power(operators: Operators, omega: FloatArray, response: ComplexArray) -> FloatArray:
+def surface_power(operators: System, omega: FloatArray, response: ComplexArray) -> FloatArray:
     """Power from the moving wetted surface into the water, omega^2/2 Re(U^H C Psi).
 
     With n out of the fluid this is -1/2 Re of the integral of p v_n* over the surface.
     """
+    solid = operators.blocks.solid
     displacement = np.zeros_like(response)
-    displacement[..., operators.blocks.u] = response[..., operators.blocks.u]
+    displacement[..., solid] = response[..., solid]
     potential = np.zeros_like(response)
     potential[..., operators.blocks.psi] = response[..., operators.blocks.psi]
     return 0.5 * np.asarray(omega) ** 2 * _real_form(operators.terms["C"], displacement, potential)
+
+
+def radiation_efficiency(
+    operators: Operators,
+    normal_motion: csr_matrix,
+    omega: FloatArray,
+    response: ComplexArray,
+    power: FloatArray,
+) -> FloatArray:
+    """Radiated power over that of a piston of the same motion (theory: S2-47).
+
+    sigma = P / (rho c/2 int |v_n|^2 dS): one for a plane wave, small for a body that the water can
+    flow around.
+
+    Parameters
+    ----------
+    normal_motion : csr_matrix
+        int (u . n) (du . n) over the wetted surface, `fluid.normal_motion_matrix`.
+    power : (...,) array
+        Radiated power by any path [W].
+    """
+    u = operators.blocks.u
+    own = operators.free[u]
+    moved = response[..., u]
+    squared = _real_form(csr_matrix(normal_motion[own][:, own]), moved, moved)
+    impedance = operators.density * operators.sound_speed
+    return np.asarray(power / (0.5 * impedance * np.asarray(omega) ** 2 * squared))
 
 
 def level(power: FloatArray) -> FloatArray:
@@ -120,7 +183,7 @@ def level(power: FloatArray) -> FloatArray:
     return np.where(positive, 10.0 * np.log10(safe / REFERENCE_POWER), np.nan)
 
 
-def _real_form(matrix: csr_matrix, left: AnyArray, right: AnyArray) -> FloatArray:
+def _real_form(matrix: Matrix, left: AnyArray, right: AnyArray) -> FloatArray:
     """Re(left^H A right) along the last axis."""
     columns = right.reshape(-1, right.shape[-1]).T
     product = (matrix @ columns).T.reshape(right.shape)

@@ -11,16 +11,17 @@ from scipy.sparse import csr_matrix
 
 from quietblade.errors import MeshError
 from quietblade.mesh.assembly import csr_of
-from quietblade.typing import FloatArray
+from quietblade.typing import ComplexArray, FloatArray
 from quietblade.vibroacoustics.fluid import Water, boundary, potential_space
 
 
 class RadiationCondition(Protocol):
     """A condition d psi/dn + b psi = 0 on the sphere, as affine terms of A(omega).
 
-    The matrices are real, symmetric and positive on the space Q of the potential; A(omega) gets
-    the sum of ``factors[name] * matrices[name]``.  Power leaves through the sphere where the
-    imaginary part of that sum is negative.
+    A(omega) gets the sum of ``factors[name] * matrices[name]`` and, for what acts on a few
+    spherical harmonics only, of ``factors[name] * Y Y^T`` with ``Y = loads[name]``; both are
+    positive on the space Q of the potential.  Power leaves through the sphere where the imaginary
+    part of that sum is negative.
     """
 
     @property
@@ -30,8 +31,16 @@ class RadiationCondition(Protocol):
     def matrices(self, fem: ngs.Mesh, water: Water, outer: str) -> Mapping[str, csr_matrix]:
         """Real symmetric matrices (Q.ndof, Q.ndof), by name."""
 
+    def loads(
+        self, fem: ngs.Mesh, water: Water, outer: str, radius: float
+    ) -> Mapping[str, csr_matrix]:
+        """Real loads Y (Q.ndof, m) of the terms of low rank, by name; empty if it is local."""
+
     def factors(self, omega: complex, sound_speed: float, radius: float) -> Mapping[str, complex]:
-        """Factor of each matrix at an angular frequency [rad/s]."""
+        """Factor of each matrix and of each Y Y^T at an angular frequency [rad/s]."""
+
+    def coefficients(self, degree: int, kr: float) -> ComplexArray:
+        """R b on the harmonics of the degrees 0..degree, (degree + 1,), to judge the condition."""
 
 
 @dataclass(frozen=True)
@@ -53,9 +62,57 @@ class Bgt1:
         scale = water.density / water.sound_speed
         return {"Q": csr_matrix(scale * sphere_mass(fem, outer))}
 
+    def loads(
+        self, fem: ngs.Mesh, water: Water, outer: str, radius: float
+    ) -> Mapping[str, csr_matrix]:
+        """Nothing: it is local."""
+        return {}
+
     def factors(self, omega: complex, sound_speed: float, radius: float) -> Mapping[str, complex]:
         """-(i omega + c/R) for Q."""
         return {"Q": -(1j * omega + sound_speed / radius)}
+
+    def coefficients(self, degree: int, kr: float) -> ComplexArray:
+        """1 + i k R for every degree."""
+        return np.full(degree + 1, 1.0 + 1j * kr)
+
+
+@dataclass(frozen=True)
+class Bgt2:
+    """Second-order condition of Bayliss, Gunzburger and Turkel (theory: S2-40).
+
+    b psi = beta psi - 1/(2 beta) Laplace-Beltrami psi with beta = i k + 1/R.  Exact for degrees 0
+    and 1.  It feeds power back below k R = sqrt 2 for degree 2, sqrt 5 for degree 3, 3 for 4.
+
+    References
+    ----------
+    A. Bayliss, M. Gunzburger, E. Turkel, SIAM J. Appl. Math. 42 (1982) 430-451.
+    """
+
+    name: str = "BGT-2"
+
+    def matrices(self, fem: ngs.Mesh, water: Water, outer: str) -> Mapping[str, csr_matrix]:
+        """Q = int rho psi dpsi and T = int rho grad_S psi . grad_S dpsi over the sphere."""
+        return {
+            "Q": csr_matrix(water.density * sphere_mass(fem, outer)),
+            "T": csr_matrix(water.density * sphere_stiffness(fem, outer)),
+        }
+
+    def loads(
+        self, fem: ngs.Mesh, water: Water, outer: str, radius: float
+    ) -> Mapping[str, csr_matrix]:
+        """Nothing: it is local."""
+        return {}
+
+    def factors(self, omega: complex, sound_speed: float, radius: float) -> Mapping[str, complex]:
+        """-beta for Q and -1/(2 beta) for T."""
+        beta = 1j * omega / sound_speed + 1.0 / radius
+        return {"Q": -beta, "T": -0.5 / beta}
+
+    def coefficients(self, degree: int, kr: float) -> ComplexArray:
+        """Beta + l (l + 1)/(2 beta) with beta = 1 + i k R."""
+        beta, degrees = 1.0 + 1j * kr, np.arange(degree + 1)
+        return np.asarray(beta + degrees * (degrees + 1) / (2.0 * beta))
 
 
 def static_exterior(fem: ngs.Mesh, water: Water, radius: float, outer: str = "outer") -> csr_matrix:

@@ -75,6 +75,7 @@ def _drawings(folder: RunFolder, result: Result) -> Mapping[str, Drawing]:
         "mesh": lambda: scenes.draw_mesh(folder),
         "deformed": _deformed(folder, result, None),
         **_section_drawings([result]),
+        "cavitation": lambda: sections.draw_cavitation(result),
         "convergence": lambda: sections.draw_convergence(result),
     }
     if not result.configurations:

@@ -53,6 +53,8 @@ _CAPTIONS = {
     "blade-angle": "Blade angle along the span.",
     "lift-coefficient": "Lift coefficient along the span: rigid blade, rigid blade's load applied "
     "once, and equilibrium.",
+    "cavitation": "Suction along the span; cavitation begins where it reaches the cavitation number "
+    "of the section at the top of its turn.",
     "convergence": "How the loop between flow and structure converged.",
     "sound-power": "Radiated sound power, with the wet modes that make the peaks.",
     "power-paths": "Where the injected power goes; the multipoles do not depend on the waves that "

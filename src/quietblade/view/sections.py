@@ -81,6 +81,23 @@ def draw_lift_coefficient(results: Sequence[Result]) -> Figure:
 
 
 @styled
+def draw_cavitation(result: Result) -> Figure:
+    """Suction along the span of each state, against the cavitation number at the top of a turn."""
+    figure, axes = _spanwise("Cavitation", r"$-C_{p,\min}$ and $\sigma$ [–]")
+    _plot(axes, [result], lambda static: static.sections.suction)
+    curves = result.static.sections
+    axes.plot(
+        curves.span_fraction, curves.cavitation_number[state("coupled")], color=GREY,
+        linestyle=(0, (1, 1)), label=r"$\sigma$, coupled",
+    )  # fmt: skip
+    axes.set_yscale("log")
+    axes.yaxis.set_major_formatter("{x:g}")
+    axes.yaxis.set_minor_formatter("")
+    axes.legend(loc="best")
+    return figure
+
+
+@styled
 def draw_convergence(result: Result) -> Figure:
     """Change of the displacement pass by pass, with the tip displacement and the lift."""
     history, tolerance = result.static.history, result.static.tolerance

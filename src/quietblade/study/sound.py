@@ -1,0 +1,174 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Sound of a case about one configuration: response over the band, and where its power goes."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from quietblade.case import Case
+from quietblade.errors import Notice
+from quietblade.linalg import SolverReport
+from quietblade.study.vibration import Vibration, symmetric_solver
+from quietblade.typing import ComplexArray, FloatArray, IntArray, Progress
+from quietblade.vibroacoustics.multipoles import Multipoles
+from quietblade.vibroacoustics.peaks import Peaks, find_peaks
+from quietblade.vibroacoustics.power import PowerBudget, power_budget
+from quietblade.vibroacoustics.radiation_check import radiation_notices
+from quietblade.vibroacoustics.reduced import Certificate
+from quietblade.vibroacoustics.sweep import solve_response
+
+
+@dataclass(frozen=True, eq=False)
+class Sound:
+    """Response over frequency and where its power goes.
+
+    Attributes
+    ----------
+    name : str
+        ``C0`` or ``C1``.
+    frequency : (f,) float array
+        [Hz]
+    budget : PowerBudget
+        Injected, radiated and dissipated power [W].
+    work : (f,) complex array
+        b^T x [J], for the mobility.
+    multipoles : Multipoles
+        Outgoing waves by the Kirchhoff-Helmholtz integral.
+    residual : (f,) float array
+        ``||A x - b|| / ||b||`` of the whole system; of a reduced sweep at the snapshots only, nan
+        elsewhere.
+    estimate : (f,) float array
+        Estimated error of the power level by the reduced model [dB], nan in a direct sweep.
+    snapshots : (k,) float array
+        Frequencies near the damped modes [Hz], with ``solutions`` (k, n) there.
+    solutions : (k, n) complex array
+    report : SolverReport
+        What the solvers did in the sweep.
+    failures : mapping of float to str
+        Frequencies that could not be solved [Hz], and why.
+    certificate : Certificate or None
+        Of a reduced sweep.
+    peaks : Peaks or None
+        Of a reduced sweep.
+    notices : tuple of Notice
+    """
+
+    name: str
+    frequency: FloatArray
+    budget: PowerBudget
+    work: ComplexArray
+    multipoles: Multipoles
+    residual: FloatArray
+    estimate: FloatArray
+    snapshots: FloatArray
+    solutions: ComplexArray
+    report: SolverReport
+    failures: Mapping[float, str] = field(default_factory=dict)
+    certificate: Certificate | None = None
+    peaks: Peaks | None = None
+    notices: tuple[Notice, ...] = ()
+
+
+def solve_sound(
+    case: Case, vibration: Vibration, frequency: FloatArray, progress: Progress
+) -> Sound:
+    """Find response and powers at the frequencies [Hz], by the sweep that the case asks for."""
+    if vibration.sweep is None:
+        return _direct(case, vibration, frequency, progress)
+    return _reduced(case, vibration, frequency, progress)
+
+
+def _direct(case: Case, vibration: Vibration, frequency: FloatArray, progress: Progress) -> Sound:
+    """One factorisation a frequency."""
+    operators = vibration.operators
+    solver = symmetric_solver(case)
+    response = solve_response(
+        operators, frequency, vibration.load, solver=solver, progress=progress
+    )
+    assert response.solution is not None  # nothing observed: the solutions are kept
+    nearest = _nearest(frequency, vibration.damped.frequency)
+    waves = vibration.sources.multipoles(response.omega, response.solution)
+    failed = [
+        Notice(f"sweep {vibration.name}", f"no solution at {f:.6g} Hz: {why}")
+        for f, why in response.failures.items()
+    ]
+    return Sound(
+        name=vibration.name,
+        frequency=frequency,
+        budget=power_budget(operators, response.omega, response.solution, vibration.load),
+        work=np.asarray(response.solution @ vibration.load),
+        multipoles=waves,
+        residual=response.residual,
+        estimate=np.full(frequency.shape, np.nan),
+        snapshots=frequency[nearest],
+        solutions=response.solution[nearest],
+        report=response.report,
+        failures=response.failures,
+        notices=(
+            *waves.notices(),
+            *radiation_notices(operators.condition, operators.radius, waves),
+            *_coarse_step(vibration, frequency),
+            *failed,
+        ),
+    )
+
+
+def _reduced(case: Case, vibration: Vibration, frequency: FloatArray, progress: Progress) -> Sound:
+    """Evaluate the certified reduced model of the configuration at all frequencies."""
+    sweep = vibration.sweep
+    assert sweep is not None
+    operators, model, omega = vibration.operators, sweep.model, 2.0 * np.pi * frequency
+    progress("sweep", 0.1, f"{len(frequency)} frequencies on {model.size} columns")
+    waves = vibration.sources.on(model.columns()).multipoles(omega, model.coordinates(omega))
+    progress("sweep", 0.6, "peaks")
+    peaks = find_peaks(sweep, case.acoustics.band)
+    nearest = _nearest(frequency, vibration.damped.frequency)
+    residual = np.full(frequency.shape, np.nan)
+    residual[nearest] = [model.residual(float(omega[k])) for k in nearest]
+    return Sound(
+        name=vibration.name,
+        frequency=frequency,
+        budget=model.budget(omega),
+        work=model.work(omega),
+        multipoles=waves,
+        residual=residual,
+        estimate=sweep.estimate(frequency),
+        snapshots=frequency[nearest],
+        solutions=model.solution(omega[nearest]),
+        report=sweep.report,
+        certificate=sweep.certificate,
+        peaks=peaks,
+        notices=(
+            *waves.notices(),
+            *radiation_notices(operators.condition, operators.radius, waves),
+        ),
+    )
+
+
+def _nearest(frequency: FloatArray, wanted: FloatArray) -> IntArray:
+    """Places of the frequencies nearest to those wanted inside the band, each once."""
+    inside = wanted[(wanted >= frequency[0]) & (wanted <= frequency[-1])]
+    return np.unique([int(np.argmin(np.abs(frequency - f))) for f in inside]).astype(np.int64)
+
+
+def _coarse_step(vibration: Vibration, frequency: FloatArray) -> list[Notice]:
+    """Say which needles a direct sweep misses between its frequencies."""
+    damped = vibration.damped
+    width = damped.frequency * np.abs(damped.loss_factor)
+    found = []
+    for f, w in zip(damped.frequency, width, strict=True):
+        if frequency[0] <= f <= frequency[-1]:
+            distance = float(np.min(np.abs(frequency - f)))
+            if distance > 0.25 * w:
+                found.append(
+                    Notice(
+                        f"sweep {vibration.name}",
+                        f"the peak at {f:.5g} Hz, {w:.2g} Hz wide, lies between the frequencies; "
+                        "distance of the nearest [Hz]",
+                        distance,
+                        0.25 * float(w),
+                        'Use sweep = "reduced", or points_per_mode = 1 or more',
+                    )
+                )
+    return found

@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Peaks of the sound power: maxima of a reduced model, never read off a grid (theory: S2-62)."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import brentq, minimize_scalar
+
+from quietblade.typing import FloatArray
+from quietblade.vibroacoustics.reduced import ReducedSweep
+
+_REACH = 4.0  # half-power widths on either side in which the maximum is sought
+_NARROWEST = 1e-7  # relative width of the search for a mode that hardly decays
+_FINE = 1e-12  # relative tolerance of a peak's frequency
+
+
+@dataclass(frozen=True, eq=False)
+class Peaks:
+    """Maxima of the radiated power, in ascending frequency.
+
+    Attributes
+    ----------
+    frequency : (k,) array
+        Where the power is largest [Hz].
+    power : (k,) array
+        The largest power [W].
+    width : (k,) array
+        Distance of the frequencies on both sides where the power is half of that [Hz]; nan where
+        it does not fall so far before a neighbour or the end of the band.
+    estimate : (k,) array
+        Estimate of the error of the level [dB].
+    """
+
+    frequency: FloatArray
+    power: FloatArray
+    width: FloatArray
+    estimate: FloatArray
+
+
+def find_peaks(sweep: ReducedSweep, band: tuple[float, float]) -> Peaks:
+    """Find the maxima of the radiated power that the model's damped modes make in a band [Hz].
+
+    Parameters
+    ----------
+    sweep : ReducedSweep
+        Certified model.
+    band : (float, float)
+        Lowest and highest frequency [Hz].
+    """
+    model = sweep.model
+
+    def power(frequency: float) -> float:
+        return float(model.radiated(np.array([2.0 * np.pi * frequency]))[0])
+
+    found: list[float] = []
+    for resonance, loss in zip(*model.light_modes(band), strict=True):
+        reach = _REACH * max(loss, _NARROWEST) * resonance
+        low, high = max(band[0], resonance - reach), min(band[1], resonance + reach)
+        best = minimize_scalar(
+            lambda f: -power(f), bounds=(low, high), method="bounded",
+            options={"xatol": _FINE * resonance},
+        )  # fmt: skip
+        top, margin = float(best.x), 1e-3 * (high - low)
+        inside = low + margin < top < high - margin
+        if inside and all(abs(top - other) > 1e-9 * top for other in found):
+            found.append(top)
+    frequency = np.sort(found)
+    return Peaks(
+        frequency,
+        np.array([power(f) for f in frequency]),
+        np.array([_width(power, float(f), band) for f in frequency]),
+        sweep.estimate(frequency) if len(frequency) else np.zeros(0),
+    )
+
+
+def _width(power: Callable[[float], float], top: float, band: tuple[float, float]) -> float:
+    """Distance between the frequencies of half the power; nan if there are none."""
+    half = 0.5 * power(top)
+    sides = []
+    for end in band:
+        reach = abs(end - top)
+        near, distance = top, _NARROWEST * top
+        while True:
+            far = top + np.sign(end - top) * min(distance, reach)
+            value = power(far)
+            if value <= half:
+                break
+            if distance >= reach:
+                return float("nan")
+            near, distance = far, 1.5 * distance
+        sides.append(brentq(lambda f: power(f) - half, near, far, xtol=_FINE * top))
+    return float(abs(sides[1] - sides[0]))
