@@ -9,6 +9,8 @@ from pathlib import Path
 import pytest
 
 from quietblade.case import Case
+from quietblade.case.library import NAMES, SOURCE_OF
+from tools import case_reference
 from verification.acoustics_closed_forms import bgt1, power_ratio
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -89,19 +91,41 @@ def test_readme_begins_with_two_commands() -> None:
     assert re.search(r"```sh\nmake demo\nmake test\n```", section)
 
 
-@pytest.mark.parametrize("name", ["README.md", "docs/case-file.md"])
-def test_toml_examples_can_be_read(name: str) -> None:
-    text = (ROOT / name).read_text(encoding="utf-8")
-    examples = re.findall(r"```toml\n(.*?)```", text, re.S)
-    assert examples
-    for example in examples:
-        assert tomllib.loads(example)
+def toml_examples(name: str) -> list[str]:
+    return re.findall(r"```toml\n(.*?)```", (ROOT / name).read_text(encoding="utf-8"), re.S)
 
 
 def test_readme_case_is_a_case() -> None:
-    text = (ROOT / "README.md").read_text(encoding="utf-8")
-    case = Case.parse(re.findall(r"```toml\n(.*?)```", text, re.S)[0])
-    assert case.blade.hub_radius == pytest.approx(0.15)
+    (example,) = toml_examples("README.md")
+    assert Case.parse(example).blade.hub_radius == pytest.approx(0.15)
+
+
+def test_examples_of_the_case_page_fit_into_a_case() -> None:
+    whole = Case.parse(toml_examples("README.md")[0])
+    examples = toml_examples("docs/case-file.md")
+    assert len(examples) > 5
+    for example in examples:
+        words = tomllib.loads(example)
+        lists = {name: rows for name, rows in words.items() if isinstance(rows, list)}
+        tables = {name: table for name, table in words.items() if name not in lists}
+        keys = {f"{name}.{key}": value for name, t in tables.items() for key, value in t.items()}
+        assert keys or lists
+        whole.varied(keys | lists)
+
+
+def test_every_key_of_a_case_is_in_its_reference() -> None:
+    page = "\n".join(case_reference.keys())
+    models = Case.model_json_schema()["$defs"]
+    keys = {key for model in models.values() for key in model.get("properties", {})}
+    assert len(keys) > 80
+    assert {k for k in keys if f"| `{k}` |" not in page and f".{k}]`" not in page} == set()
+
+
+def test_every_material_of_the_library_is_listed_with_its_source() -> None:
+    for name in NAMES:
+        entry = case_reference.material(name)
+        assert entry.startswith(f"`{name}`")
+        assert SOURCE_OF[name] in entry
 
 
 def test_readme_python_example_runs(capsys: pytest.CaptureFixture[str]) -> None:

@@ -6,7 +6,14 @@ from pathlib import Path
 
 import pytest
 
-PAGES = sorted((Path(__file__).resolve().parent.parent / "docs" / "reference").glob("*.md"))
+FOLDER = Path(__file__).resolve().parent.parent / "docs" / "reference"
+INDEX = FOLDER / "index.md"
+PAGES = sorted(set(FOLDER.glob("*.md")) - {INDEX})
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+def test_overview_leads_to_the_page(page: Path) -> None:
+    assert f"]({page.name}) |" in INDEX.read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)

@@ -149,8 +149,8 @@ BAD: list[tuple[str, str, str, tuple[str, ...]]] = [
     ("nu12 = 0.04\nnu23 = 0.2\nnu13 = 0.2", "nu12 = 0.9\nnu23 = 1.0\nnu13 = 1.0",
      "materials.woven", ("1 - nu12 nu21 - nu23 nu32", "together are too large")),
     # choices
-    ('sphere_radius = "1.3 m"', 'sphere_radius = "1.3 m"\nradiation = "bgt"',
-     "acoustics.radiation", ("not a radiation condition", 'Did you mean "bgt1"?')),
+    ('sphere_radius = "1.3 m"', 'sphere_radius = "1.3 m"\nradiation = "bgt3"',
+     "acoustics.radiation", ("not a radiation condition", 'Known: "dtn", "bgt1"')),
     ('size = "25 mm"', 'size = "25 mm"\n[solver]\nname = "pardiso"', "solver.name",
      ("is not a solver", 'Known: "auto", "rslab"')),
     ('sphere_radius = "1.3 m"', 'sphere_radius = "1.3 m"\nconfigurations = []',

@@ -31,6 +31,18 @@ def test_any_skew_part_is_solved(seed: int, skew: float) -> None:
     assert factor.residual < 1e-7
 
 
+@settings(max_examples=10, deadline=None)
+@given(st.integers(0, 1000), st.sampled_from([0.0, 1e-3, 0.1]))
+def test_an_accuracy_of_the_solution_takes_fewer_substitutions(seed: int, skew: float) -> None:
+    A = matrix(60, skew, seed)
+    b = np.random.default_rng(seed).standard_normal(60)
+    solver = make_nearly_symmetric_solver(accuracy=1e-5)
+    exact, factor = np.linalg.solve(A.toarray(), b), solver.factor(A)
+    assert np.linalg.norm(factor.solve(b) - exact) < 1e-3 * np.linalg.norm(exact)
+    assert factor.residual <= 1e-5
+    assert solver.report().fallbacks == ()
+
+
 def test_inertia_is_that_of_the_symmetric_part() -> None:
     A = matrix(80, 0.05, 3)
     positive, negative, zero = make_nearly_symmetric_solver().factor(A).inertia or (0, 0, 0)

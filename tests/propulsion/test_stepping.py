@@ -1,16 +1,19 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 from dataclasses import replace
 
+import ngsolve as ngs
 import numpy as np
 import pytest
 
+from quietblade.materials import IsotropicSVK
 from quietblade.propulsion.contact import SurfaceCrossing, crossing_pairs
 from quietblade.propulsion.newton import Tolerance
 from quietblade.propulsion.structure import Spin, Structure
 from quietblade.propulsion.supports import ElasticBed
 from quietblade.typing import FloatArray
 from tests.propulsion.solid_models import lift, plate
-from verification.structure_models import SURFACE, Beam
+from verification.structure_elastica import _Cantilever
+from verification.structure_models import SURFACE, Beam, box_mesh
 
 COLUMN = Beam(length=1.0, height=0.02, cells=6, youngs_modulus=70e9)
 
@@ -19,6 +22,15 @@ def axial(beam: Beam, structure: Structure, force: float) -> FloatArray:
     """Tip load of ``force`` times E I / L^2 along the axis."""
     size = force * beam.bending_stiffness / beam.length**2
     return beam.tip_load(structure, np.array([0.0, 0.0, size]))
+
+
+def rolled_strip(points: FloatArray, radius: float) -> FloatArray:
+    """Displacement of a bar along z that is bent to an arc."""
+    angle = points[:, 2] / radius
+    moved = points.copy()
+    moved[:, 1] = radius - (radius - points[:, 1]) * np.cos(angle)
+    moved[:, 2] = (radius - points[:, 1]) * np.sin(angle)
+    return moved - points
 
 
 def nothing(structure: Structure) -> FloatArray:
@@ -120,6 +132,50 @@ def test_the_linear_system_is_the_derivative_of_the_residual_under_all_loads() -
         assert error < 1e-5 * np.linalg.norm(wanted / scale)
 
 
+# -- rough waypoints, and tolerances below rounding ------------------------------------------------
+
+
+def test_the_last_quarter_of_a_rolled_strip_is_reached() -> None:
+    # Waypoints that were far from balance made it fail, however small the step.
+    cantilever = _Cantilever("end moment", Beam(cells=60))
+    structure = cantilever._structure
+    bent = rolled_strip(structure.basis.points, 10.0 / (1.5 * np.pi))
+    guess = replace(structure.rest(), displacement=structure.basis.to_dofs(bent))
+    start = cantilever.solve(1.5 * np.pi, guess)
+    assert len(start.steps) == 1
+    state = cantilever.solve(2.0 * np.pi, start)
+    assert not all(step.converged for step in state.steps)
+    assert {step.fraction for step in state.steps if step.converged} > {1.0}
+    tip = cantilever.tip(state)
+    assert tip.u == pytest.approx(1.0, abs=5e-4)
+    assert tip.w == pytest.approx(0.0, abs=5e-4)
+
+
+def test_rounding_ends_an_iteration_with_a_notice() -> None:
+    beam = Beam(length=1.0, height=0.01, cells=10)
+    structure = beam.structure()
+    load = beam.tip_load(structure, np.array([0.0, 1e-6 * beam.bending_stiffness, 0.0]))
+    state = structure.solve(nothing(structure), dead_load=load, tolerance=1e-12)
+    assert state.converged
+    assert len(state.steps) == 1
+    assert len(state.newton) < 10
+    assert 1e-12 < state.newton[-1].residual < 1e-4
+    notice = state.notices[0]
+    assert "double precision" in notice.message
+    assert (notice.value, notice.limit) == (state.newton[-1].residual, 1e-12)
+    assert structure.values(state)[:, 1].max() == pytest.approx(1e-6 / 3, rel=1e-2)
+    relaxed = structure.solve(nothing(structure), dead_load=load, tolerance=1e-4)
+    assert relaxed.notices == ()
+
+
+def test_an_honest_tolerance_is_reached_without_a_notice() -> None:
+    structure = plate()
+    state = structure.solve(lift(structure), tolerance=1e-9)
+    assert state.newton[-1].residual <= 1e-9
+    assert state.notices == ()
+    assert structure.equations.rounding(state.unknowns) < 1e-6
+
+
 # -- surfaces that cross --------------------------------------------------------------------------
 
 
@@ -132,6 +188,18 @@ def test_triangles_that_cross_are_found_and_neighbours_are_not() -> None:
     assert crossing_pairs(points, triangles).tolist() == [[0, 2]]
     points[4:7, 2] += 3.0
     assert len(crossing_pairs(points, triangles)) == 0
+
+
+@pytest.mark.parametrize("tetrahedra", [False, True])
+def test_the_surface_of_any_cells_is_made_of_triangles(tetrahedra: bool) -> None:
+    unit, law = np.array([0.0, 0.5, 1.0]), IsotropicSVK("solid", 1.0, 1e3, 0.3)
+    mesh = box_mesh(unit, unit, unit, tetrahedra=tetrahedra)
+    surface = SurfaceCrossing(Structure(mesh, {"blade": law}, wetted=SURFACE).forms)
+    corners = surface.points[surface.triangles]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    assert len(surface.triangles) == 5 * 4 * 2
+    assert np.linalg.norm(normals, axis=1).sum() / 2 == pytest.approx(5.0)
+    assert surface.find(np.zeros(3 * ngs.H1(mesh, order=2).ndof)) is None
 
 
 def test_a_plate_that_is_folded_onto_itself_is_noticed() -> None:
@@ -147,12 +215,7 @@ def test_a_plate_that_is_folded_onto_itself_is_noticed() -> None:
 
     def rolled(turns: float) -> FloatArray:
         """Displacement unknowns of a bar bent to an arc of some turns."""
-        radius = 1.0 / (2 * np.pi * turns)
-        angle = points[:, 2] / radius
-        moved = points.copy()
-        moved[:, 1] = radius - (radius - points[:, 1]) * np.cos(angle)
-        moved[:, 2] = (radius - points[:, 1]) * np.sin(angle)
-        return structure.basis.to_dofs(moved - points)
+        return structure.basis.to_dofs(rolled_strip(points, 1.0 / (2 * np.pi * turns)))
 
     assert surface.find(rolled(0.9)) is None
     crossing = surface.find(rolled(1.03))

@@ -5,14 +5,19 @@ from functools import cache
 import ngsolve as ngs
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from quietblade.errors import GeometryError, MeshError
+from quietblade.flow.contours import contour_loads
 from quietblade.flow.inflow import BladeFlow, StripInflow, strip_loads
+from quietblade.flow.sections import section_frames
 from quietblade.geometry import Blade
 from quietblade.mesh import INTERFACE, Mesh
 from quietblade.mesh.surface import SurfaceQuadrature
 from quietblade.propulsion.transfer import LoadTransfer, SurfacePressure
 from tests.conftest import make_paper_blade, make_twisted_blade
+from verification.flow_coupling import work_ratio
 
 STATIONS = np.linspace(0.0, 1.0, 31)
 NODES = 61
@@ -323,3 +328,57 @@ def test_errors() -> None:
     moved = replace(surface, points=surface.points + np.array([0.0, 0.02, 0.0]))
     with pytest.raises(MeshError, match="away from the section"):
         LoadTransfer(moved, PAPER, STATIONS, sections)
+
+
+@pytest.mark.parametrize("blade", [PAPER, make_twisted_blade()], ids=["paper", "twisted"])
+def test_errors_of_force_and_moment_are_reported(blade: Blade) -> None:
+    points = transfer(blade).surface.points
+    for displacement in (np.zeros_like(points), arc(points) - points):
+        flow, result = carry(blade, displacement)
+        np.testing.assert_allclose(result.force_error, result.force - flow.total.force, atol=1e-9)
+        np.testing.assert_allclose(
+            result.moment_error, result.moment - flow.total.moment, atol=1e-9
+        )
+        assert np.linalg.norm(result.moment_error) < 0.03 * np.linalg.norm(flow.total.moment)
+    assert np.linalg.norm(result.force_error) > 0.0  # along the bent span, not across it
+
+
+@settings(max_examples=10, deadline=None)
+@given(
+    seed=st.integers(0, 2**31),
+    level=st.floats(-1e4, 1e4, allow_nan=False),
+    size=st.floats(1.0, 1e4),
+)
+def test_random_smooth_pressures_keep_force_and_moment(
+    seed: int, level: float, size: float
+) -> None:
+    """Whatever the pressure of the sections: loads that they integrate to arrive."""
+    room = transfer(PAPER)
+    random = np.random.default_rng(seed)
+    around = np.linspace(-np.pi, np.pi, NODES)
+    waves = sum(
+        random.normal() * np.cos(k * around + random.normal()) / (1 + k * k) for k in range(6)
+    )
+    along = np.polynomial.Polynomial(random.normal(size=4))(STATIONS)
+    pressure = level + size * along[:, None] * waves
+    frames = section_frames(room.sections)
+    flow = INFLOW.loads(frames)
+    plane, turn = contour_loads(frames.contours, pressure, np.array([0.5, 0.0]))
+    chord = frames.chord[:, None]
+    axes = np.stack([frames.chord_direction, frames.normal], axis=1)
+    loads = replace(
+        flow,
+        pressure=pressure,
+        force=chord * np.einsum("md,mdx->mx", plane, axes),
+        moment=chord**2 * turn[:, None] * frames.tangent,
+    )
+    result = room.pressure(frames, loads, np.zeros_like(room.surface.points))
+    whole = np.sqrt(np.mean(pressure**2)) * 0.16
+    assert result.mismatch < 1e-11
+    assert np.abs(result.force_error[:2]).max() < 1e-11 * whole
+    assert abs(result.moment_error[2]) < 1e-11 * whole
+
+
+@pytest.mark.parametrize("seed", [11, 12])
+def test_work_of_section_wise_rigid_motions_is_conserved(seed: int) -> None:
+    assert work_ratio(seed) == pytest.approx(1.0, abs=1e-5)

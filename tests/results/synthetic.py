@@ -109,6 +109,11 @@ def make_static(shape: Shape) -> m.StaticResult:
             relative_change=np.r_[np.nan, 0.09 * 0.28 ** np.arange(0, 7)],
             tip_displacement=np.outer(1.0 - 0.09 * (-0.28) ** passes, _tip(shape)),
             lift=lift[2] + (lift[0] - lift[2]) * (-0.28) ** (passes - 1),
+            error=np.r_[np.nan, 0.035 * 0.28 ** np.arange(0, 7)],
+            rate=np.r_[np.nan, np.full(7, 0.28)],
+            eigenvalue=np.r_[np.nan, np.full(7, -0.28 + 0.0j)],
+            fraction=np.ones(8),
+            factorizations=np.ones(8, dtype=int),
         ),
         newton=m.NewtonTable(
             coupling_iteration=np.repeat(passes, 4),
@@ -116,6 +121,8 @@ def make_static(shape: Shape) -> m.StaticResult:
             iteration=np.tile(np.arange(4), 8),
             residual=np.tile([1.0, 3e-2, 4e-5, 1e-10], 8),
             increment=np.tile([0.9, 2e-2, 1e-5, np.nan], 8),
+            force=np.tile([50.0, 1.5, 2e-3, 5e-9], 8),
+            motion=np.tile([0.1, 2e-3, 1e-6, np.nan], 8),
             new_tangent=np.tile([True, True, False, False], 8),
         ),
         sections=m.SectionCurves(
@@ -135,6 +142,30 @@ def make_static(shape: Shape) -> m.StaticResult:
             shedding_frequency=np.tile(0.21 * SPEED / (0.02 * chord), (3, 1)),
         ),
         performance=make_performance(lift),
+        stress=m.StressTable(
+            region=("blade", "film"),
+            von_mises=np.array([2.1e8, 2.4e5]),
+            von_mises_p99=np.array([1.6e8, 2.2e5]),
+            von_mises_place=np.array([[0.02, 0.007, 0.21], [0.02, 0.0, 0.27]]),
+            principal_stress=np.array([2.4e8, 1.9e5]),
+            logarithmic_strain=np.array([3.2e-3, 0.5 * shape.shear]),
+        ),
+        failure=m.FailureTable(
+            region=("blade",),
+            name=("yield",),
+            value=np.array([0.8]),
+            p99=np.array([0.6]),
+            place=np.array([[0.02, 0.007, 0.21]]),
+        ),
+        reaction=m.ReactionResult(
+            force=np.array([0.1, -1.0, 0.0]) * lift[2],
+            moment=np.array([0.6, -0.05, -0.01]) * lift[2],
+            force_imbalance=2e-9,
+            moment_imbalance=3e-9,
+            transferred_force_error=1e-13,
+            transferred_moment_error=2e-3,
+        ),
+        loads=m.LoadTable(kind=(), force=np.zeros((0, 3)), moment=np.zeros((0, 3))),
         mid_section=make_mid_section(shape),
         tip_displacement=_tip(shape),
         force=np.stack([-0.1 * lift, lift, 0.0 * lift], axis=1),
@@ -144,6 +175,9 @@ def make_static(shape: Shape) -> m.StaticResult:
         torque=0.1 * lift * SPEED / ROTATION,
         tolerance=1e-5,
         converged=True,
+        coupling_method="fixed-point",
+        coupling_kind="steady",
+        load_fraction=1.0,
         max_film_shear_strain=shape.shear,
         film_shear_strain_p99=0.82 * shape.shear,
         max_film_shear_strain_place=np.array([0.02, 0.0, 0.27]),
@@ -228,14 +262,28 @@ def make_configuration(
             injected=injected,
             dissipated=injected - radiated * (1 + 1e-8),
             solver_residual=np.full(len(frequency), 3e-12),
+            error_estimate=np.full(len(frequency), 2e-4),
             mobility=modal_mobility.sum(axis=0),
         ),
+        sweep=m.SweepRecord("reduced", 0.01, 2e-4, 16, 64, 1),
+        peaks=_peaks(frequency, radiated),
+        bands=m.BandTable(np.array([125.89, 158.49]), np.array([70.0, 72.0]), 71.0),
         radiation_condition="BGT-1",
         outer_radius=1.3,
         sound_speed=1500.0,
         water_density=DENSITY,
         excitation_pressure=1.0e4,
         excitation_area=1.0e-3,
+    )
+
+
+def _peaks(frequency: FloatArray, power: FloatArray) -> m.PeakTable:
+    top = np.flatnonzero((power[1:-1] > power[:-2]) & (power[1:-1] > power[2:])) + 1
+    return m.PeakTable(
+        frequency[top],
+        10.0 * np.log10(power[top] / m.REFERENCE_POWER),
+        4e-3 * frequency[top],
+        np.full(len(top), 1e-5),
     )
 
 
@@ -288,6 +336,7 @@ def write_synthetic_fields(folder: RunFolder, mesh: Mesh, result: m.Result) -> N
         [
             PointField("displacement", moved),
             PointField("film_shear_strain", strain),
+            PointField("von_mises_stress", 2e8 * (1.0 - s) + 1e6, "blade"),
             PointField("pressure", pressure),
         ],
     )

@@ -38,15 +38,6 @@ def test_a_flank_is_no_peak() -> None:
     assert "E2" not in find_peaks(replace(c0, modes=on_flank))
 
 
-def test_an_unsolved_frequency_hides_no_peak() -> None:
-    c0 = make_result("aluminium").configurations["C0"]
-    power = c0.spectrum.power.copy()
-    far = np.argmin(np.abs(c0.spectrum.frequency - 150.0))
-    power[:, far] = np.nan
-    holed = replace(c0, spectrum=replace(c0.spectrum, power=power))
-    assert find_peaks(holed) == find_peaks(c0)
-
-
 def test_partners() -> None:
     c0 = make_result("aluminium").configurations["C0"]
     assert partner_of(c0, "T2") == ("T2", 0.97)

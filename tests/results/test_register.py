@@ -61,7 +61,12 @@ def test_entries_are_described_and_their_dimensions_known() -> None:
 
 def test_levels_name_their_reference() -> None:
     assert QUANTITIES["C*/spectrum/power_level"].label == "dB re 1 pW"
-    assert all(q.reference for q in QUANTITIES.values() if q.unit == "dB")
+    levels = [q for q in QUANTITIES.values() if q.unit == "dB" and q.name.endswith("level")]
+    assert levels
+    assert all(q.reference for q in levels)
+    # what is left are differences of levels
+    others = {q.name for q in QUANTITIES.values() if q.unit == "dB"} - {q.name for q in levels}
+    assert others == {"accuracy", "largest_estimate", "estimate", "error_estimate"}
 
 
 def test_values_are_copied_and_read_only() -> None:

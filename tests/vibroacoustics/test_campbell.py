@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from quietblade.vibroacoustics.campbell import campbell
@@ -15,6 +15,7 @@ def southwell(rest: float, factor: float) -> np.ndarray:
     return np.sqrt(rest**2 + factor * (SPEED / (2.0 * np.pi)) ** 2)
 
 
+@settings(deadline=None)
 @given(st.floats(3.0, 30.0), st.floats(0.1, 4.0), st.integers(2, 7))
 def test_crossing_of_southwells_law_is_exact(rest: float, factor: float, blades: int) -> None:
     found = campbell(SPEED, [np.array([f]) for f in southwell(rest, factor)], blades, orders=(1, 2))

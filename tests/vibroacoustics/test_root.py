@@ -22,6 +22,7 @@ from quietblade.vibroacoustics.transfer_functions import (
     root_path,
 )
 from quietblade.vibroacoustics.vacuum import dry_operators
+from verification.acoustics_excitation import PLATE
 from verification.acoustics_oscillators import bar_carried, bar_stiffness, cantilever_mobility
 from verification.acoustics_plate import WetPlate, solve_all
 from verification.structure_models import Beam
@@ -31,9 +32,8 @@ OMEGA = 2.0 * np.pi * FREQUENCY
 PLACE, FORCE = np.array([0.06, 0.015, 0.2]), np.array([0.4, -1.0, 0.3])
 
 
-@cache
 def plate() -> WetPlate:
-    return WetPlate()
+    return PLATE
 
 
 @cache

@@ -24,7 +24,7 @@ from quietblade.case.fields import (
 Inflow = Literal["none", "lifting-line", "momentum"]
 Root = Literal["mirrored", "free"]
 Control = Literal["prandtl", "weissinger"]
-Friction = Literal["ittc-1957", "prandtl-schlichting", "none"]
+Friction = Literal["ittc-1957", "prandtl-schlichting", "boundary-layer", "none"]
 
 
 def _odd(count: int) -> int:
@@ -98,7 +98,8 @@ class FlowWords(Words):
     friction: Annotated[Friction, one_of(Friction, "a friction line")] = Field(
         "ittc-1957",
         title="Friction",
-        description="Friction line for thrust, torque and efficiency; it does not load the blade",
+        description="Viscous drag for thrust, torque and efficiency, by a friction line with form "
+        "factor or an integral boundary layer; it does not load the blade",
     )
     depth: LengthOrZero = Field(
         0.0, title="Depth", description="Depth of the rotor axis, for the cavitation check"

@@ -16,7 +16,9 @@ from quietblade import __version__
 from quietblade.cli.common import ExitCode, error_console, show_error
 from quietblade.errors import QuietbladeError
 
-COMMANDS = ("new", "check", "run", "show", "plot", "report", "compare", "section")
+COMMANDS = (
+    "new", "check", "run", "show", "plot", "report", "compare", "section", "export", "materials",
+)  # fmt: skip
 """Each is the function of the same name in the module of the same name."""
 
 # its base is the usage error of the click that typer carries, wherever that is

@@ -26,7 +26,7 @@ from quietblade.linalg.refinement import System, refined
 from quietblade.linalg.report import Level, Log, SolverReport
 from quietblade.linalg.rslab import Rslab
 from quietblade.linalg.superlu import SuperLu
-from quietblade.typing import AnyArray
+from quietblade.typing import AnyArray, FloatArray
 
 SolverName = Literal["auto", "rslab", "mkl-pardiso", "superlu"]
 Precision = Literal["mixed", "double"]
@@ -169,6 +169,11 @@ class ChainFactorization:
     def n(self) -> int:
         """Number of unknowns."""
         return int(self._system.A.shape[0])
+
+    @property
+    def scale(self) -> FloatArray:
+        """Scales (n,) that equilibrate the matrix from both sides."""
+        return self._system.scale
 
     @property
     def level(self) -> Level:

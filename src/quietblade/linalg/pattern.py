@@ -20,7 +20,7 @@ def canonical(A: SparseMatrix) -> csr_matrix:
     SolverError
         If the matrix is not square, or has values that are not finite.
     """
-    A = csr_matrix(A)
+    A = A if isinstance(A, csr_matrix) else csr_matrix(A)  # one object remembers its format
     if A.shape[0] != A.shape[1]:
         raise SolverError(f"linear solver: the matrix must be square, got {A.shape}")
     if not A.has_canonical_format:
@@ -85,9 +85,11 @@ class Pattern:
             rows, columns, source = rows[keep], columns[keep], source[keep]
         if layout == "csc":
             rows, columns = columns, rows
+        indptr = np.concatenate([[0], np.cumsum(np.bincount(rows, minlength=n))]).astype(np.int64)
+        if layout != "csc" and missing.size == 0:  # as sorted as the canonical matrix
+            return cls(n, indptr, columns, source)
         order = np.lexsort((columns, rows))
-        indptr = np.concatenate([[0], np.cumsum(np.bincount(rows, minlength=n))])
-        return cls(n, indptr.astype(np.int64), columns[order], source[order])
+        return cls(n, indptr, columns[order], source[order])
 
     def values(self, A: csr_matrix) -> AnyArray:
         """Values of a canonical matrix on this pattern, in the order of the layout."""

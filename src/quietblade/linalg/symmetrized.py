@@ -19,7 +19,7 @@ from quietblade.errors import SolverError
 from quietblade.linalg.chain import ChainFactorization, SolverChain, make_solver
 from quietblade.linalg.pattern import canonical, same_pattern
 from quietblade.linalg.protocol import BackendFailed, Factorization, Inertia, SparseMatrix
-from quietblade.linalg.refinement import System, refined
+from quietblade.linalg.refinement import Refined, System, refined
 from quietblade.linalg.report import Fallback, SolverReport
 from quietblade.typing import AnyArray, FloatArray, IntArray
 
@@ -42,10 +42,14 @@ class SymmetrizedSolver:
     ----------
     symmetric, general : SolverChain
         For the symmetric part, and for whole matrices on which the iteration fails.
+    accuracy : float or None
+        Relative error of the solution that is enough, as the Krylov steps measure it; None if the
+        residual has to reach the tolerance of `symmetric`.
     """
 
     symmetric: SolverChain
     general: SolverChain
+    accuracy: float | None = None
     _transposed: "list[_Transposition]" = field(default_factory=list, repr=False, compare=False)
     _fallbacks: list[Fallback] = field(default_factory=list, repr=False, compare=False)
     _lock: Lock = field(default_factory=Lock, repr=False, compare=False)
@@ -97,15 +101,22 @@ class SymmetrizedAnalysis:
     def factor(self, A: SparseMatrix) -> "SymmetrizedFactor":
         """Factor the symmetric part of new values."""
         A = canonical(A)
-        mean = 0.5 * (A.data + A.data[self.transposition.order])
+        part, skew = self._split(A)
+        return SymmetrizedFactor(self.solver, A, self.solver.symmetric.factor(part), skew)
+
+    def _split(self, A: csr_matrix) -> tuple[csr_matrix, csr_matrix | None]:
+        """Symmetric and skew part; None for a skew part that is rounding."""
+        mean = A.data[self.transposition.order]
+        mean += A.data
+        mean *= 0.5
+        part = csr_matrix((mean, A.indices, A.indptr), shape=A.shape)
         rest = A.data - mean
         size = float(np.abs(A.data).max(initial=0.0))
-        skew = None
-        if np.abs(rest).max(initial=0.0) > _SYMMETRIC * size:
-            skew = csr_matrix((rest, A.indices, A.indptr), shape=A.shape, copy=True)
-            skew.eliminate_zeros()
-        part = csr_matrix((mean, A.indices, A.indptr), shape=A.shape)
-        return SymmetrizedFactor(self.solver, A, self.solver.symmetric.factor(part), skew)
+        if np.abs(rest).max(initial=0.0) <= _SYMMETRIC * size:
+            return part, None
+        kept = rest != 0.0
+        starts = np.concatenate([[0], np.cumsum(kept)])[A.indptr]
+        return part, csr_matrix((rest[kept], A.indices[kept], starts), shape=A.shape)
 
 
 class SymmetrizedFactor:
@@ -160,10 +171,7 @@ class SymmetrizedFactor:
     def _column(self, b: AnyArray) -> AnyArray:
         if self._whole is None:
             try:
-                result = refined(
-                    self._system, self._approximate, b[:, None],
-                    symmetric=False, tolerance=self._solver.symmetric.tolerance, steps=_REFINEMENTS,
-                )  # fmt: skip
+                result = self._iterated(b[:, None])
             except BackendFailed as failure:
                 self._take_the_whole(str(failure))
             else:
@@ -180,20 +188,38 @@ class SymmetrizedFactor:
         self.residual = self._whole.residual
         return x
 
-    def _approximate(self, b: AnyArray) -> AnyArray:
-        """Solve ``(1 + S^-1 N) x = S^-1 b`` roughly; S is the symmetric part, N the skew one."""
+    def _iterated(self, b: AnyArray) -> Refined:
+        """Solve to the wanted accuracy or, if none is given, to the wanted residual."""
+        accuracy = self._solver.accuracy
+        if accuracy is None:
+            return refined(
+                self._system, lambda r: self._krylov(r, _KRYLOV).x, b,
+                symmetric=False, tolerance=self._solver.symmetric.tolerance, steps=_REFINEMENTS,
+            )  # fmt: skip
+        return self._krylov(b, accuracy)
+
+    def _krylov(self, b: AnyArray, accuracy: float) -> Refined:
+        """Solve ``(1 + S^-1 N) x = S^-1 b``; S is the symmetric part, N the skew one.
+
+        The relative residual is of this system, where it is about the error of the solution.
+        """
         half, skew = self._half, self._skew
         assert skew is not None
         # scaled, so that no field of the solution hides behind another one's unit
-        d = self._system.scale[:, None]
+        d = self._half.scale[:, None]
 
         def product(y: FloatArray) -> FloatArray:
             return np.asarray(y + (half.substitute(skew @ (d * y[:, None])) / d)[:, 0])
 
         operator = LinearOperator((self.n, self.n), matvec=product, dtype=np.float64)
         start = (half.substitute(b) / d)[:, 0]
-        y, _ = gmres(operator, start, rtol=_KRYLOV, restart=_MOST_STEPS, maxiter=1)
-        return d * y[:, None]
+        sizes = [0.0]
+        y, unfinished = gmres(
+            operator, start, rtol=accuracy, restart=_MOST_STEPS, maxiter=1,
+            callback=sizes.append, callback_type="pr_norm",
+        )  # fmt: skip
+        converged = unfinished == 0 and bool(np.isfinite(y).all())
+        return Refined(d * y[:, None], float(sizes[-1]), len(sizes), converged)
 
     @cached_property
     def _system(self) -> System:
@@ -216,7 +242,8 @@ class _Transposition:
 
     @classmethod
     def of(cls, A: csr_matrix) -> "_Transposition":
-        numbered = csr_matrix((np.arange(A.nnz), A.indices, A.indptr), shape=A.shape)
+        numbers = np.arange(A.nnz, dtype=A.indices.dtype)
+        numbered = csr_matrix((numbers, A.indices, A.indptr), shape=A.shape)
         turned = numbered.T.tocsr()
         turned.sort_indices()
         if not same_pattern(turned, A.indptr, A.indices):
@@ -224,10 +251,22 @@ class _Transposition:
         return cls(A.indptr.copy(), A.indices.copy(), np.asarray(turned.data))
 
 
-def make_nearly_symmetric_solver(tolerance: float = 1e-9) -> SymmetrizedSolver:
-    """Make a solver of real matrices that are symmetric or nearly so, with inertia."""
+def make_nearly_symmetric_solver(
+    tolerance: float = 1e-9, *, accuracy: float | None = None
+) -> SymmetrizedSolver:
+    """Make a solver of real matrices that are symmetric or nearly so, with inertia.
+
+    Parameters
+    ----------
+    tolerance : float
+        Largest relative residual.
+    accuracy : float or None
+        If given, matrices with a skew part are solved until the error of the solution is about
+        this share of it (then `residual` means that), which takes half the substitutions of a
+        small residual.
+    """
     chains = [
         make_solver(symmetric=symmetric, precision="double", tolerance=tolerance)
         for symmetric in (True, False)
     ]
-    return SymmetrizedSolver(chains[0], chains[1])
+    return SymmetrizedSolver(chains[0], chains[1], accuracy)

@@ -51,7 +51,9 @@ class SecantModel:
         Numbers of the steps in use.
     """
 
-    def __init__(self, steps: Sequence[FloatArray], images: Sequence[FloatArray]) -> None:
+    def __init__(
+        self, steps: Sequence[FloatArray], images: Sequence[FloatArray], noise: float = 0.0
+    ) -> None:
         basis: list[FloatArray] = []
         kept: list[int] = []
         for number, step in enumerate(steps):
@@ -60,7 +62,7 @@ class SecantModel:
                 for q in basis:
                     rest = rest - (q @ rest) * q
             size, new = float(np.linalg.norm(step)), float(np.linalg.norm(rest))
-            if size > 0.0 and new > _NOTHING_NEW * size:
+            if new > max(_NOTHING_NEW * size, noise):
                 basis.append(rest / new)
                 kept.append(number)
         self.kept = tuple(kept)
@@ -291,7 +293,7 @@ def make_accelerator(method: Method, depth: int = 5) -> Accelerator:
 def iterate(
     image: Map, start: FloatArray, rule: Accelerator, *, depth: int = 5
 ) -> Iterator[tuple[Pass, FloatArray]]:
-    """Yield pass after pass of an iteration, without end.
+    """Yield pass after pass of an iteration, without end unless it runs out of numbers.
 
     Parameters
     ----------
@@ -314,6 +316,9 @@ def iterate(
     while True:
         iteration += 1
         there = np.asarray(image(x), dtype=np.float64)
+        if not np.isfinite(there).all():
+            yield Pass(iteration, np.inf, np.inf, complex(np.nan), np.inf), there
+            return
         pairs = [*pairs[-depth:], (x.ravel(), there.ravel())]
         change = (there - x).ravel()
         size = float(np.linalg.norm(change))

@@ -19,7 +19,13 @@ from quietblade.flow.inflow import BladeFlow, Inflow
 from quietblade.propulsion import acceleration
 from quietblade.propulsion.coupling_problem import CoupledBlade, CouplingStep, Limits, Method
 from quietblade.propulsion.coupling_ramp import Ramp
-from quietblade.propulsion.divergence import Kind, classify, divergence_pressure, divergence_ratio
+from quietblade.propulsion.divergence import (
+    Kind,
+    classify,
+    divergence_pressure,
+    divergence_ratio,
+    suspicious,
+)
 from quietblade.propulsion.structure import Structure, StructureState
 from quietblade.propulsion.transfer import LoadTransfer, SurfacePressure
 from quietblade.typing import FloatArray, Progress, silent
@@ -224,7 +230,9 @@ def solve_static(
         way.chain(rigid, start_there=len(ramp) == 1)
     way.climb(ramp)
     good = way.good
-    kind = _confirmed(classify(tuple(way.history), way.converged), way.converged, problem)
+    history, at_rest = tuple(way.history), None
+    if not way.converged or suspicious(history):
+        at_rest = divergence_pressure(structure, transfer, inflow)
     state = StaticState(
         structure=good.state,
         displacement=good.displacement,
@@ -232,13 +240,13 @@ def solve_static(
         rigid=rigid,
         chained_flow=way.chained_flow if chained else None,
         coupled=problem.flow(good.displacement),
-        history=tuple(way.history),
+        history=history,
         tolerance=tolerance,
         converged=way.converged,
         method=method,
         stop=limits.stop,
         fraction=way.reached,
-        kind=kind,
+        kind=classify(history, way.converged, at_rest),
         flows=problem.solved_sections / len(transfer.s),
     )
     return replace(state, notices=(*way.notices, *good.state.notices, *_notices(state, way.reason)))
@@ -252,18 +260,6 @@ def _check(method: str, ramp: Sequence[float]) -> None:
         raise ValueError(
             f"ramp {tuple(ramp)}: fractions of the pressure increase from above 0 to 1"
         )
-
-
-def _confirmed(kind: Kind, converged: bool, problem: CoupledBlade) -> Kind:
-    """Judge by the undeformed blade what steps that were large or led nowhere cannot tell."""
-    if converged and kind != "post-divergence":
-        return kind
-    at_rest = divergence_pressure(problem.structure, problem.transfer, problem.inflow)
-    if converged:
-        return kind if at_rest.pressure_ratio <= 1.0 else "steady"
-    if at_rest.pressure_ratio <= 1.0:
-        return "divergence"
-    return "wash-out" if at_rest.rate >= 1.0 else "unresolved"
 
 
 def _notices(state: StaticState, reason: str) -> Iterator[Notice]:

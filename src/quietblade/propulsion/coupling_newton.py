@@ -15,7 +15,7 @@ from time import perf_counter
 import numpy as np
 
 from quietblade.flow.inflow import BladeFlow
-from quietblade.propulsion.acceleration import SecantModel, model_of, relative
+from quietblade.propulsion.acceleration import SecantModel, relative
 from quietblade.propulsion.coupling_problem import (
     FAILURES,
     CoupledBlade,
@@ -40,6 +40,9 @@ _WEAK = 0.3
 # Corrections from farther away than this share of the displacement also mend the bending: they are
 # no passes of flow and structure.
 _NEAR = 0.05
+
+# Differences below this many tolerances of the structure are noise.
+_NOISE = 100.0
 
 # After larger corrections the sections are too distorted to deserve every one of their flows: every
 # fourth is solved.
@@ -83,7 +86,8 @@ def solve_by_corrections(
             history.append(run.correct(history))
             progress("flow and structure", None, str(history[-1]))
             last = len(history) >= limits.max_iterations
-            if not last and not limits.done(history[-1].change, history[-1].error):
+            small = limits.done(history[-1].change, history[-1].error)
+            if not last and not small:
                 if run.grows(history):
                     return Stage(None, tuple(history), False, "the corrections grow")
                 continue
@@ -123,7 +127,8 @@ class _Corrections:
         kept = self.structure._kept_state is start.state
         self.solve: Solve | None = self.structure._kept_tangent if kept else None
         self.size = np.nan
-        self.coarse = self.strong = False
+        self.strong = False
+        self.model = self.latest = SecantModel([], [])
         self.equations.begin(self.x)
         self.seen: list[_Seen] = []
 
@@ -133,9 +138,6 @@ class _Corrections:
         coarse = (
             len(history) > 1 and history[-1].change > _TRANSIENT and not self._needs_flow(history)
         )
-        if self.coarse and not coarse:
-            self.seen.clear()  # differences between fine and coarse flows are no derivatives
-        self.coarse = coarse
         flow = problem.flow(self.displacement, every=_COARSE if coarse else 1)
         surface = problem.surface(flow, self.displacement)
         equations.set_loading(problem.loading(surface, self.fraction))
@@ -152,7 +154,7 @@ class _Corrections:
         if self._needs_flow(history):
             model, responses = self._derived(solve)
             strong = abs(model.dominant) > _WEAK
-        self.strong = strong
+        self.strong, self.latest = strong, model
         if strong:
             step = step - model.completion(change, responses)
             change = self._nodal(-step)
@@ -193,7 +195,8 @@ class _Corrections:
             *self.seen[-self.limits.depth :],
             _Seen(before.ravel(), surface.values, change),
         ]
-        step = self._step(history, change, flow, self._observed(), state.newton, began)
+        model = self.latest if self.strong else self._observed()
+        step = self._step(history, change, flow, model, state.newton, began)
         return Point(state, self.displacement, surface), step
 
     def _step(
@@ -210,9 +213,12 @@ class _Corrections:
         size = float(np.linalg.norm(change))
         ratio = size / self.size if history and self.size > 0.0 else np.nan
         self.size = size
-        # what the model has put into the step is no error of it
-        beyond = 0.0 if strong else model.beyond(change, ratio)
-        rest = ratio / (1.0 - ratio) * size if ratio < 1.0 else np.inf
+        # by the observed ratio while there is no model of two directions, and where the model is
+        # part of the step, so that what it knows is no error any more
+        error = ratio / (1.0 - ratio) * size if ratio < 1.0 else np.inf
+        if not strong:
+            known = model.beyond(change, ratio)
+            error = known if len(model.kept) > 1 else max(known, error)
         return CouplingStep(
             iteration=len(history) + 1,
             change=relative(size, self.displacement) if history else np.inf,
@@ -222,7 +228,7 @@ class _Corrections:
             newton=table,
             seconds=perf_counter() - began,
             fraction=self.fraction,
-            error=relative(max(beyond, rest), self.displacement),
+            error=relative(error, self.displacement),
             eigenvalue=model.dominant,
         )
 
@@ -249,11 +255,20 @@ class _Corrections:
 
     def _observed(self) -> SecantModel:
         """Model of a pass of flow and structure from small corrections, which are such passes."""
-        newest = self.seen[-1].displacement
-        reach = _NEAR * float(np.linalg.norm(newest))
-        far = [float(np.linalg.norm(newest - s.displacement)) > reach for s in self.seen]
-        first = len(far) - far[::-1].index(True) if True in far else 0
-        return model_of([(s.displacement, s.displacement + s.change) for s in self.seen[first:]])
+        newest = self.seen[-1]
+        size = float(np.linalg.norm(newest.displacement))
+        steps, images = [], []
+        for older in self.seen[-2::-1]:
+            step = newest.displacement - older.displacement
+            if float(np.linalg.norm(step)) > _NEAR * size:
+                break
+            steps.append(step)
+            images.append(step + newest.change - older.change)
+        # the longest first: the last steps are little more than the structure's tolerance
+        noise = _NOISE * self.limits.newton_tolerance * size
+        found = SecantModel(steps[::-1], images[::-1], noise)
+        self.model = found if found.kept or not steps else self.model
+        return self.model
 
     def _derived(self, solve: Solve) -> tuple[SecantModel, list[FloatArray]]:
         """Model from the flow's differences alone, and the free unknowns that answer them."""

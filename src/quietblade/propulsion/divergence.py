@@ -14,6 +14,7 @@ from typing import Literal
 import numpy as np
 
 from quietblade.flow.inflow import Inflow
+from quietblade.propulsion.acceleration import Map
 from quietblade.propulsion.coupling_problem import CoupledBlade, CouplingStep
 from quietblade.propulsion.loading import Loading
 from quietblade.propulsion.structure import Structure, StructureState
@@ -24,6 +25,12 @@ Kind = Literal["steady", "wash-out", "divergence", "post-divergence", "unresolve
 
 # An eigenvalue counts as real if its imaginary part is at most this share of it.
 _REAL = 0.05
+
+# Eigenvalues below this share of the largest one are not resolved.
+_RESOLVED = 1e-2
+
+# Divergence pressures below this many times the dynamic pressure deserve a closer look.
+_SUSPECT = 2.0
 
 # Largest displacement in a finite difference of the flow, as a share of the span.
 _STEP = 1e-4
@@ -74,7 +81,9 @@ def divergence_ratio(eigenvalues: AnyArray, fraction: float = 1.0) -> float:
     """
     values = np.atleast_1d(np.asarray(eigenvalues, dtype=complex))
     values = values[np.isfinite(values)]
-    real = values[(np.abs(values.imag) <= _REAL * np.abs(values)) & (values.real > 0.0)].real
+    size = np.abs(values)
+    resolved = size > _RESOLVED * np.max(size, initial=0.0)
+    real = values[resolved & (np.abs(values.imag) <= _REAL * size) & (values.real > 0.0)].real
     return float(fraction / np.max(real)) if len(real) else np.inf
 
 
@@ -159,7 +168,7 @@ def divergence_pressure(
     return Divergence(_arnoldi(image, respond(here).ravel(), dimension), fraction)
 
 
-def _arnoldi(image, start: FloatArray, dimension: int) -> AnyArray:  # type: ignore[no-untyped-def]
+def _arnoldi(image: Map, start: FloatArray, dimension: int) -> AnyArray:
     """Ritz values, the largest first."""
     basis = [start / np.linalg.norm(start)]
     columns = np.zeros((dimension + 1, dimension))
@@ -179,7 +188,16 @@ def _arnoldi(image, start: FloatArray, dimension: int) -> AnyArray:  # type: ign
     return np.asarray(values[np.argsort(-np.abs(values))])
 
 
-def classify(history: tuple[CouplingStep, ...], converged: bool) -> Kind:
+def suspicious(history: tuple[CouplingStep, ...]) -> bool:
+    """Whether an eigenvalue on the way comes near to divergence, so that one should look closer."""
+    return any(
+        divergence_ratio(np.array([step.eigenvalue]), step.fraction) < _SUSPECT for step in history
+    )
+
+
+def classify(
+    history: tuple[CouplingStep, ...], converged: bool, at_rest: Divergence | None = None
+) -> Kind:
     """Tell apart what happened (theory: S1-99).
 
     Parameters
@@ -187,26 +205,26 @@ def classify(history: tuple[CouplingStep, ...], converged: bool) -> Kind:
     history : tuple of CouplingStep
     converged : bool
         Whether the coupling converged at the whole pressure.
+    at_rest : Divergence or None
+        Eigenvalues at the undeformed blade, if they are known.
 
     Returns
     -------
     {"steady", "wash-out", "divergence", "post-divergence", "unresolved"}
         *steady*: an equilibrium that a plain fixed point finds too; *wash-out*: eigenvalues beyond
         1 that are negative or complex, so that an equilibrium exists but a plain fixed point
-        misses it; *divergence*: a real eigenvalue beyond 1 at the end; *post-divergence*: an
-        equilibrium that only softening lift or stiffening blades leave, after an eigenvalue beyond
-        1 on the way; *unresolved*: not converged for another reason.
+        misses it; *divergence*: a real eigenvalue beyond 1; *post-divergence*: a stable
+        equilibrium that only softening lift or stiffening deformation leaves to a blade beyond its
+        divergence pressure at rest; *unresolved*: not converged for another reason.
     """
-    values = np.array([step.eigenvalue for step in history if np.isfinite(step.eigenvalue)])
-    if not len(values):
-        return "steady" if converged else "unresolved"
-    last = values[-1]
-    if abs(last) >= 1.0:
-        return "divergence" if np.isfinite(divergence_ratio(values[-1:])) else "wash-out"
+    if not converged and at_rest is not None:
+        if at_rest.pressure_ratio <= 1.0:
+            return "divergence"
+        return "wash-out" if at_rest.rate >= 1.0 else "unresolved"
+    last = [step.eigenvalue for step in history if np.isfinite(step.eigenvalue)][-1:]
+    if last and abs(last[0]) >= 1.0:
+        return "divergence" if np.isfinite(divergence_ratio(np.array(last))) else "wash-out"
     if not converged:
         return "unresolved"
-    passed = any(
-        step.rate > 1.0 and divergence_ratio(np.array([step.eigenvalue]), step.fraction) < 1.0
-        for step in history
-    )
-    return "post-divergence" if passed else "steady"
+    beyond = at_rest is not None and at_rest.pressure_ratio <= 1.0
+    return "post-divergence" if beyond else "steady"

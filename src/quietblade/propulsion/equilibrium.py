@@ -5,6 +5,7 @@ import ngsolve as ngs
 import numpy as np
 
 from quietblade.linalg import SparseSolver
+from quietblade.mesh.assembly import csr_of
 from quietblade.propulsion.forms import StructuralForms, Terms, parallel
 from quietblade.propulsion.linear import FreeSystem
 from quietblade.propulsion.loading import Loading
@@ -17,6 +18,8 @@ _ROUNDING_MARGIN = 1e3
 
 # Forces and displacements below this share of those at the start count as this share.
 _NOTHING = 1e-3
+
+_EPS = float(np.finfo(float).eps)
 
 
 class Equilibrium:
@@ -58,17 +61,20 @@ class Equilibrium:
         self._n_moving = int(forms.free[: forms.n_displacement].sum())
         self._film_pivots = int(forms.free[forms.n_displacement :].sum())
         self._correction = ngs.GridFunction(forms.V)
+        self._base = ngs.GridFunction(forms.V)
         loads: Terms = [*forms.pressure_terms(), *(forms.spin_terms() if spins else [])]
         self._internal = forms.form([*forms.elastic_terms(), *forms.mixed_terms()])
         self._loads = forms.form(loads)
-        self._tangent = forms.form(
-            [*forms.newton_elastic_terms(self._correction), *forms.mixed_terms(), *loads]
+        self._elastic_tangent = forms.form(
+            forms.elastic_tangent_terms(self._base, self._correction), bilinear=True
         )
+        self._other_tangent = forms.form([*forms.mixed_terms(), *loads])
         self._system = FreeSystem(
             forms.free, solver, None if support is None else support.stiffness
         )
         self._dead = np.zeros(forms.ndof)
         self._film_volumes = self._measure_film()
+        self._cell = forms.cell_size
         at_rest = self.internal(np.zeros(forms.ndof))[: forms.n_displacement]
         self._noise = _ROUNDING_MARGIN * float(np.linalg.norm(at_rest))
         self._least_force = self._least_displacement = 0.0
@@ -123,16 +129,14 @@ class Equilibrium:
         """Factorise the derivative of the residual.
 
         Its initial-stress part takes the stress that the last correction predicts, see
-        `StructuralForms.newton_elastic_terms`.
+        `StructuralForms.elastic_tangent_terms`.
 
         Returns
         -------
         callable
             From the residual of the free unknowns to the step that `correct` subtracts.
         """
-        with parallel():
-            self._tangent.AssembleLinearization(self._forms.vector(x))
-        factor = self._system.factor(self._tangent)
+        factor = self._system.factor(*self._assembled(x))
         counts = factor.inertia
         self.negative_pivots = None if counts is None else counts[1] - self._film_pivots
         return factor.solve
@@ -160,8 +164,29 @@ class Equilibrium:
         corners = moves[: forms.n_displacement].reshape(3, -1)[:, : forms.fem.nv]
         return float(np.linalg.norm(corners, axis=0).max())
 
+    def rounding(self, x: FloatArray) -> float:
+        """Bound of the relative residual that rounding makes at x.
+
+        The unknowns have an error of their last digit, and so has ``F = 1 + grad u``, as if they
+        were of the size of a cell: ``eps |K| (|u| + h)``, relative to the forces.
+        """
+        n, free = self._forms.n_displacement, self._forms.free
+        elastic, other = (csr_of(form) for form in self._assembled(x))
+        K = abs(elastic + other)[:n, :n]
+        error = (K @ (np.abs(x[:n]) + self._cell))[free[:n]]
+        force = float(np.linalg.norm(self.internal(x)[:n]))
+        return float(_EPS * np.linalg.norm(error)) / max(force, self._least_force)
+
     def _apply(self, form: ngs.BilinearForm, x: FloatArray) -> FloatArray:
         return self._forms.apply(form, x)
+
+    def _assembled(self, x: FloatArray) -> tuple[ngs.BilinearForm, ngs.BilinearForm]:
+        """Two forms whose sum is the tangent."""
+        self._base.vec.FV().NumPy()[:] = x[: self._forms.n_displacement]
+        with parallel():
+            self._elastic_tangent.Assemble()
+            self._other_tangent.AssembleLinearization(self._forms.vector(x))
+        return self._elastic_tangent, self._other_tangent
 
     def _measure_film(self) -> FloatArray:
         """Volume that belongs to each film pressure unknown [m3]."""

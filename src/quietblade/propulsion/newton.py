@@ -23,6 +23,9 @@ _POOR_CONTRACTION = 0.05
 # Increments above this size have to shrink from one iteration to the next.
 _MUST_SHRINK_ABOVE = 1e-2
 
+# Only below this relative increment a residual that stays can be that of rounding.
+_ROUNDED_BELOW = 1e-4
+
 Solve = Callable[[FloatArray], FloatArray]
 
 
@@ -121,6 +124,9 @@ class Measured(Protocol):
     def motion_size(self, step: FloatArray) -> float:
         """Largest displacement of a vertex in a step of the free unknowns [m]."""
 
+    def rounding(self, x: FloatArray) -> float:
+        """Bound of the relative residual that rounding makes at x."""
+
 
 @dataclass(frozen=True, eq=False)
 class Outcome:
@@ -138,6 +144,9 @@ class Outcome:
         Solver of the last tangent, after convergence.
     reason : str
         Why it did not converge.
+    rounding : float or None
+        If it converged to the level of rounding, short of the tolerances: the bound of that level,
+        relative as the residual.
     """
 
     x: FloatArray
@@ -145,6 +154,7 @@ class Outcome:
     steps: tuple[NewtonStep, ...]
     solve: Solve | None = None
     reason: str = ""
+    rounding: float | None = None
 
 
 def solve_newton(
@@ -178,12 +188,13 @@ def solve_newton(
     Returns
     -------
     Outcome
-        Not converged if a residual is not finite, large increments do not shrink, a linear system
-        cannot be solved, or the iterations are used up.
+        Converged also if the residual stays where rounding is as large as it is.  Not converged
+        if a residual is not finite, large increments do not shrink, a linear system cannot be
+        solved, or the iterations are used up.
     """
     units = problem if isinstance(problem, Measured) else None
     steps: list[NewtonStep] = []
-    last = before = motion = np.inf
+    last = before = motion = least = np.inf
     for iteration in range(MAX_ITERATIONS + 1):
         force, residual = problem.residual(x)
         newtons = nan if units is None else units.force_size(force)
@@ -199,10 +210,17 @@ def solve_newton(
             if not np.isfinite(residual):
                 reason = "an element is turned inside out: the residual is not finite"
             return Outcome(x, False, tuple(steps), reason=reason)
+        if units is not None and last <= _ROUNDED_BELOW and residual > 0.5 * least:
+            level = units.rounding(x)
+            if residual <= level:
+                steps.append(NewtonStep(fraction, iteration, residual, nan, False, newtons))
+                return Outcome(x, True, tuple(steps), solve, rounding=level)
+        least = min(least, residual)
         near = last < _KEEP_BELOW and last < _POOR_CONTRACTION * before
         new_tangent = solve is None or not (near or iteration == 0)
         try:
             if solve is None or new_tangent:
+                solve = None  # frees the memory of the last one
                 solve = problem.tangent(x)
             step = solve(force)
         except SolverError as error:

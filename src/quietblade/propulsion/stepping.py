@@ -5,8 +5,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
-import numpy as np
-
 from quietblade.propulsion.newton import (
     Measured,
     NewtonStep,
@@ -21,8 +19,9 @@ from quietblade.typing import FloatArray, Progress
 SMALLEST_LOAD_STEP = 1 / 256
 """Part of the way below which a step is not tried."""
 
-# Ends of intermediate load steps only have to be good first guesses.
-_WAYPOINT = 1e-2
+# Ends of intermediate load steps only have to be good first guesses.  A small increment alone does
+# not make one: a thin structure may be stretched by it, with forces far from balance.
+_WAYPOINT = Tolerance(1e-2, 1e-2)
 
 _STAGE = "structure"
 
@@ -79,6 +78,8 @@ class Path:
         The attempts.
     solve : callable or None
         Solver of the last tangent.
+    rounding : float or None
+        Where the end is not to the tolerance because of rounding: `Outcome.rounding`.
     """
 
     x: FloatArray
@@ -86,6 +87,7 @@ class Path:
     table: tuple[NewtonStep, ...]
     steps: tuple[LoadStep, ...]
     solve: Solve | None
+    rounding: float | None = None
 
     @property
     def converged(self) -> bool:
@@ -104,7 +106,10 @@ def follow(
 ) -> Path:
     """Go to the full load: at once if Newton's method converges, else in smaller steps.
 
-    A step that fails is halved, and one that succeeds lets the next be twice as long.
+    A step that fails is halved, and one that succeeds lets the next be twice as long.  Equilibria
+    on the way are found to a looser tolerance.  After a failure the last one is brought to the
+    wanted tolerance; if that fails too, the path goes back to the last one that has it, and is
+    exact from there on.
 
     Parameters
     ----------
@@ -115,48 +120,70 @@ def follow(
     load : callable
         Sets the loads at a fraction of the way.
     tolerance : Tolerance
-        At the end; equilibria on the way are found to a looser one.
+        At the end, and of the state that is returned.
     solve : callable or None
         Solver of a tangent near the start.
     progress : callable
         Called with the stage, the fraction and the last line of the table.
     """
+    walk = _Walk(equations, load, tolerance, progress)
+    sure, exact = (x, 0.0), False
     done, width = 0.0, 1.0
-    table: list[NewtonStep] = []
-    steps: list[LoadStep] = []
+    rounding = None
     while done < 1.0 and width >= SMALLEST_LOAD_STEP:
         fraction = min(1.0, done + width)
-        load(fraction)
-        outcome = _attempt(equations, x, fraction, tolerance, solve)
-        table += outcome.steps
-        steps.append(_record(outcome, fraction, equations.negative_pivots))
-        progress(_STAGE, fraction if outcome.converged else done, str(table[-1]))
+        outcome = walk.attempt(x, fraction, solve, exact=exact or fraction == 1.0)
         solve = outcome.solve if fraction == 1.0 else None
         if outcome.converged:
-            x, done, width = outcome.x, fraction, 2 * width
+            x, done, width, rounding = outcome.x, fraction, 2 * width, outcome.rounding
+            if exact:
+                sure = (x, done)
+            continue
+        width /= 2
+        if done == sure[1]:
+            continue
+        outcome = walk.attempt(x, done, None, exact=True)
+        if outcome.converged:
+            sure = (outcome.x, done)
         else:
-            width /= 2
-            equations.forget()
-    return Path(x, done, tuple(table), tuple(steps), solve)
+            exact, width = True, max(width, 0.5 * (done - sure[1]))
+        x, done = sure
+    return Path(x, done, tuple(walk.table), tuple(walk.steps), solve, rounding)
 
 
-def _attempt(
-    equations: Equations,
-    x: FloatArray,
-    fraction: float,
-    tolerance: Tolerance,
-    solve: Solve | None,
-) -> Outcome:
-    if fraction == 1.0:
-        return solve_newton(
+class _Walk:
+    """Attempts at single loads, and their record."""
+
+    def __init__(
+        self,
+        equations: Equations,
+        load: Callable[[float], None],
+        tolerance: Tolerance,
+        progress: Progress,
+    ) -> None:
+        self._equations, self._load = equations, load
+        self._tolerance, self._progress = tolerance, progress
+        self.table: list[NewtonStep] = []
+        self.steps: list[LoadStep] = []
+
+    def attempt(
+        self, x: FloatArray, fraction: float, solve: Solve | None, *, exact: bool
+    ) -> Outcome:
+        """Find the equilibrium at a fraction of the way, from x."""
+        equations = self._equations
+        wanted = self._tolerance if exact else _WAYPOINT
+        self._load(fraction)
+        outcome = solve_newton(
             equations, x, fraction,
-            residual_tolerance=tolerance.residual, increment_tolerance=tolerance.increment,
-            force_tolerance=tolerance.force, motion_tolerance=tolerance.motion, solve=solve,
+            residual_tolerance=wanted.residual, increment_tolerance=wanted.increment,
+            force_tolerance=wanted.force, motion_tolerance=wanted.motion, solve=solve,
         )  # fmt: skip
-    return solve_newton(
-        equations, x, fraction,
-        residual_tolerance=np.inf, increment_tolerance=_WAYPOINT, solve=solve,
-    )  # fmt: skip
+        if not outcome.converged:
+            equations.forget()
+        self.table += outcome.steps
+        self.steps.append(_record(outcome, fraction, equations.negative_pivots))
+        self._progress(_STAGE, fraction, str(self.table[-1]))
+        return outcome
 
 
 def _record(outcome: Outcome, fraction: float, negative_pivots: int | None) -> LoadStep:

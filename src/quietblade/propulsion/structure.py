@@ -222,7 +222,7 @@ class Structure:
             solve=self._kept_tangent if start is not None and start is self._kept_state else None,
             progress=progress,
         )
-        state = self._state(path, begin.loading.towards(target, path.fraction))
+        state = self._state(path, begin.loading.towards(target, path.fraction), wanted)
         failure = self._failure(state) if not path.converged else self._inverted(state)
         if failure is not None:
             self.forget()
@@ -264,12 +264,13 @@ class Structure:
                 raise ValueError(f"{name} has to be {size} finite numbers, got shape {array.shape}")
         return Loading(np.asarray(pressure, dtype=float), dead, self.spin.omega**2)
 
-    def _state(self, path: Path, loading: Loading) -> StructureState:
+    def _state(self, path: Path, loading: Loading, wanted: Tolerance) -> StructureState:
         n = self.forms.n_displacement
         state = StructureState(
             path.x[:n], path.x[n:], loading, path.table, path.converged, path.fraction, path.steps
         )
-        return replace(state, notices=(*self._instability(state), *self._crossing(state)))
+        rounded = () if path.rounding is None else (_rounded(state, path.rounding, wanted),)
+        return replace(state, notices=(*rounded, *self._instability(state), *self._crossing(state)))
 
     def _instability(self, state: StructureState) -> tuple[Notice, ...]:
         fraction = state.unstable_from
@@ -303,7 +304,7 @@ class Structure:
     def _failure(self, state: StructureState) -> EquilibriumError:
         """Say where and why the path ended."""
         largest = float(np.linalg.norm(self.values(state), axis=1).max())
-        last = state.steps[-1]
+        last = next(step for step in reversed(state.steps) if not step.converged)
         cause = (
             "The structure diverges or buckles there (lower the load, or stiffen it), or cells are "
             "too poor (refine the mesh)."
@@ -360,3 +361,16 @@ class Structure:
     def elastic_support(self) -> ElasticSupport | None:
         """The elastic support's forces and stiffness, if there is one."""
         return None if self.support is None else assemble_support(self.forms, self.support)
+
+
+def _rounded(state: StructureState, level: float, wanted: Tolerance) -> Notice:
+    reached = state.newton[-1].residual
+    return Notice(
+        _STAGE,
+        f"the residual stays at {reached:.1e} of the forces, where rounding is up to {level:.1e}: "
+        f"the tolerance {wanted.residual:.1e} (of increments {wanted.increment:.1e}) cannot be "
+        "reached in double precision",
+        reached,
+        wanted.residual,
+        remedy="Ask for a larger tolerance, or give a smallest force and motion in N and m",
+    )

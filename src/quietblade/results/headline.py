@@ -12,6 +12,7 @@ from quietblade.results.summary import (
     BalanceSummary,
     CellSummary,
     ClaimSummary,
+    FailureSummary,
     MeshSummary,
     ModesSummary,
     ModeSummary,
@@ -20,6 +21,7 @@ from quietblade.results.summary import (
     SoundPowerSummary,
     StateFigures,
     StaticSummary,
+    StrengthSummary,
     Summary,
 )
 from quietblade.typing import FloatArray
@@ -38,6 +40,7 @@ def summarise(result: Result) -> Summary:
         blade=result.blade,
         static=_static(result),
         performance=_performance(result),
+        strength=_strength(result),
         modes=ModesSummary(
             C0=_modes(configurations.get("C0")), C1=_modes(configurations.get("C1"))
         ),
@@ -75,8 +78,38 @@ def _static(result: Result) -> StaticSummary:
         tip_blade_angle_deg=float(np.degrees(twist)),
         iterations=static.iterations,
         relative_change=float(static.history.relative_change[-1]),
+        estimated_error=float(static.history.error[-1]),
+        method=static.coupling_method,
+        kind=static.coupling_kind,
         changes=tuple(static.history.relative_change.tolist()),
         converged=static.converged,
+    )
+
+
+def _strength(result: Result) -> StrengthSummary:
+    stress, failure = result.static.stress, result.static.failure
+    reaction = result.static.reaction
+
+    def by_region(values: FloatArray) -> dict[str, float]:
+        return dict(zip(stress.region, values.tolist(), strict=True))
+
+    return StrengthSummary(
+        von_mises_pa=by_region(stress.von_mises),
+        von_mises_p99_pa=by_region(stress.von_mises_p99),
+        logarithmic_strain=by_region(stress.logarithmic_strain),
+        failure=tuple(
+            FailureSummary(
+                region=region,
+                name=name,
+                value=float(failure.value[i]),
+                p99=float(failure.p99[i]),
+                place_m=tuple(failure.place[i].tolist()),
+            )
+            for i, (region, name) in enumerate(zip(failure.region, failure.name, strict=True))
+        ),
+        root_force_n=tuple(reaction.force.tolist()),
+        root_moment_nm=tuple(reaction.moment.tolist()),
+        force_imbalance=reaction.force_imbalance,
     )
 
 
@@ -121,6 +154,7 @@ def _modes(configuration: ConfigurationResult | None) -> tuple[ModeSummary, ...]
             partner_mac=float(modes.partner_mac[i]),
             peak_frequency_hz=peaks[name].frequency if name in peaks else None,
             peak_level_db=peaks[name].level if name in peaks else None,
+            peak_width_hz=peaks[name].width if name in peaks else None,
         )
         for i, name in enumerate(modes.name)
     )
@@ -132,6 +166,7 @@ def _sound_power(result: Result) -> SoundPowerSummary:
         name: tuple(c.spectrum.power_level[path("sphere")].tolist())
         for name, c in result.configurations.items()
     }
+    means = {name: c.bands.mean_level for name, c in result.configurations.items()}
     return SoundPowerSummary(
         frequency_hz=tuple(members[0].spectrum.frequency.tolist()) if members else (),
         C0_db=levels.get("C0", ()),
@@ -139,6 +174,12 @@ def _sound_power(result: Result) -> SoundPowerSummary:
         radiation_condition=members[0].radiation_condition if members else "",
         outer_radius_m=members[0].outer_radius if members else None,
         kr_min=float(members[0].kr[0]) if members else None,
+        sweep=members[0].sweep.method if members else "",
+        largest_estimate_db=_largest(
+            np.array([member.sweep.largest_estimate]) for member in members
+        ),
+        C0_mean_db=means.get("C0"),
+        C1_mean_db=means.get("C1"),
         kr_max=float(members[0].kr[-1]) if members else None,
         max_surface_difference_db=_difference(members, "wet_surface"),
         max_multipole_difference_db=_difference(members, "multipoles"),

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from quietblade.results.model import ConfigurationResult, path
+from quietblade.results.model import ConfigurationResult
 
 _REACH = 0.02
 """A peak is looked for within 2 % of the wet mode: losses and radiation move it far less."""
@@ -23,35 +23,37 @@ class Peak:
         Frequency of the maximum [Hz].
     level : float
         Sound power level [dB re 1 pW].
+    width : float
+        Half-power width [Hz], nan if it is not known.
     """
 
     mode: str
     frequency: float
     level: float
+    width: float
 
 
 def find_peaks(configuration: ConfigurationResult) -> dict[str, Peak]:
     """Peak of each wet mode inside the band; modes that make none are left out.
 
-    The range of a mode ends half-way to its neighbours. A maximum at the end of the range is the
-    flank of something else and no peak of this mode.
+    The range of a mode ends half-way to its neighbours; the highest peak in it is the mode's.
     """
-    spectrum, modes = configuration.spectrum, configuration.modes
-    solved = np.flatnonzero(np.isfinite(spectrum.power_level[path("sphere")]))
-    frequency = spectrum.frequency[solved]
-    level = spectrum.power_level[path("sphere")][solved]
+    peaks, modes = configuration.peaks, configuration.modes
     between = 0.5 * (modes.frequency[1:] + modes.frequency[:-1])
     lowest = np.maximum(np.r_[0.0, between], (1.0 - _REACH) * modes.frequency)
     highest = np.minimum(np.r_[between, np.inf], (1.0 + _REACH) * modes.frequency)
-    peaks = {}
+    found = {}
     for name, low, high in zip(modes.name, lowest, highest, strict=True):
-        near = np.flatnonzero((frequency >= low) & (frequency <= high))
-        if near.size == 0:
-            continue
-        top = near[np.argmax(level[near])]
-        if 0 < top < len(level) - 1 and level[top] > max(level[top - 1], level[top + 1]):
-            peaks[name] = Peak(name, float(frequency[top]), float(level[top]))
-    return peaks
+        near = np.flatnonzero((peaks.frequency >= low) & (peaks.frequency <= high))
+        if near.size:
+            top = near[np.argmax(peaks.power_level[near])]
+            found[name] = Peak(
+                name,
+                float(peaks.frequency[top]),
+                float(peaks.power_level[top]),
+                float(peaks.width[top]),
+            )
+    return found
 
 
 def partner_of(configuration: ConfigurationResult, mode: str) -> tuple[str, float] | None:

@@ -50,6 +50,9 @@ class StaticSummary(_Part):
     tip_blade_angle_deg: Number = Field(description="change of the blade angle at the tip [deg]")
     iterations: int = Field(description="passes of the coupling")
     relative_change: Number = _of("static/history/relative_change", "the last one")
+    estimated_error: Number = _of("static/history/error", "the last one")
+    method: str = _of("static/coupling_method")
+    kind: str = _of("static/coupling_kind")
     changes: tuple[Number, ...] = _of("static/history/relative_change", "of each pass")
     converged: bool = _of("static/converged")
 
@@ -64,6 +67,30 @@ class StateFigures(_Part):
     torque_coefficient: Number = _of("static/performance/torque_coefficient")
     efficiency: Number = _of("static/performance/efficiency")
     inviscid_efficiency: Number = _of("static/performance/inviscid_efficiency")
+
+
+class FailureSummary(_Part):
+    """The largest of one failure index in one region."""
+
+    region: str = _of("static/failure/region")
+    name: str = _of("static/failure/name")
+    value: Number = _of("static/failure/value")
+    p99: Number = _of("static/failure/p99")
+    place_m: Vector = _of("static/failure/place")
+
+
+class StrengthSummary(_Part):
+    """Stress, failure and reactions in equilibrium."""
+
+    von_mises_pa: dict[str, Number] = _of("static/stress/von_mises", "by region")
+    von_mises_p99_pa: dict[str, Number] = _of("static/stress/von_mises_p99", "by region")
+    logarithmic_strain: dict[str, Number] = _of("static/stress/logarithmic_strain", "by region")
+    failure: tuple[FailureSummary, ...] = Field(
+        description="failure indices; empty where no strength is known"
+    )
+    root_force_n: Vector = _of("static/reaction/force")
+    root_moment_nm: Vector = _of("static/reaction/moment")
+    force_imbalance: Number = _of("static/reaction/force_imbalance")
 
 
 class PerformanceSummary(_Part):
@@ -90,6 +117,7 @@ class ModeSummary(_Part):
     partner_mac: Number = _of("C*/modes/partner_mac")
     peak_frequency_hz: Number = Field(description="frequency of the mode's peak in the power [Hz]")
     peak_level_db: Number = Field(description="sound power level of that peak [dB re 1 pW]")
+    peak_width_hz: Number = Field(description="half-power width of that peak [Hz]")
 
 
 class ModesSummary(_Part):
@@ -108,6 +136,10 @@ class SoundPowerSummary(_Part):
     radiation_condition: str = _of("C*/radiation_condition")
     outer_radius_m: Number = _of("C*/outer_radius")
     kr_min: Number = Field(description="least wave number times outer radius in the band")
+    sweep: str = _of("C*/sweep/method")
+    largest_estimate_db: Number = _of("C*/sweep/largest_estimate", "of both configurations")
+    C0_mean_db: Number = _of("C*/bands/mean_level", "at rest")
+    C1_mean_db: Number = _of("C*/bands/mean_level", "deformed")
     kr_max: Number = Field(description="greatest wave number times outer radius in the band")
     max_surface_difference_db: Number = Field(
         description="largest difference of the levels from sphere and wetted surface [dB]"
@@ -174,6 +206,7 @@ class Summary(_Part):
     blade: str = _of("blade")
     static: StaticSummary
     performance: PerformanceSummary
+    strength: StrengthSummary
     modes: ModesSummary
     sound_power: SoundPowerSummary
     balance: BalanceSummary

@@ -32,6 +32,7 @@ def summary_tables(summary: Summary) -> tuple[Table, ...]:
     tables = [
         _static(summary),
         _performance(summary),
+        _strength(summary),
         _modes(summary),
         _claims(summary),
         _checks(summary),
@@ -86,7 +87,9 @@ def _static(summary: Summary) -> Table:
              f"{number(_times(100, static.max_film_shear_strain), '.2f')} %; 99 % of the film "
              f"below {number(_times(100, static.film_shear_strain_p99), '.2f')} %"),
             ("  at x, y, z", f"{place} m"),
-            ("Coupling", f"{state}, {static.iterations} iterations, last change {change}"),
+            ("Coupling",
+             f"{state}, {static.method}, {static.iterations} iterations, last change {change}, "
+             f"estimated error {number(static.estimated_error, '.1e')}; {static.kind}"),
             ("  change by pass", ", ".join(number(c, ".1e") for c in static.changes)),
         ),
     )  # fmt: skip
@@ -117,6 +120,32 @@ def _performance(summary: Summary) -> Table:
     return Table("Performance", heads, tuple(rows), note)
 
 
+def _strength(summary: Summary) -> Table:
+    strength = summary.strength
+    rows = [
+        (f"Von Mises stress, {region}",
+         f"{number(_times(1e-6, value))} MPa; 99 % of the volume below "
+         f"{number(_times(1e-6, strength.von_mises_p99_pa[region]))} MPa")
+        for region, value in strength.von_mises_pa.items()
+    ]  # fmt: skip
+    rows += [
+        (f"Largest strain, {region}", f"{number(_times(100, value), '.3f')} % (logarithmic)")
+        for region, value in strength.logarithmic_strain.items()
+    ]
+    for index in strength.failure:
+        place = ", ".join(number(u, ".3f") for u in index.place_m)
+        rows.append(
+            (f"Failure index {index.name.replace('_', ' ')}, {index.region}",
+             f"{number(index.value, '.3f')} at {place} m; 99 % below {number(index.p99, '.3f')}")
+        )  # fmt: skip
+    if not strength.failure:
+        rows.append(("Failure index", "not computed: no strengths are given for the materials"))
+    force = ", ".join(number(f, "z.1f") for f in strength.root_force_n)
+    moment = ", ".join(number(f, "z.1f") for f in strength.root_moment_nm)
+    rows.append(("Root force, moment x, y, z", f"{force} N; {moment} N m"))
+    return Table("Strength", (), tuple(rows))
+
+
 def _modes(summary: Summary) -> Table:
     loaded = {mode.name: mode for mode in summary.modes.C1}
     rows = [_mode_row(rest, loaded.pop(rest.partner, None)) for rest in summary.modes.C0]
@@ -127,7 +156,9 @@ def _modes(summary: Summary) -> Table:
         note = (
             f"levels of the peaks in dB re 1 pW through the sphere; {sound.radiation_condition}, "
             f"R = {number(sound.outer_radius_m)} m, "
-            f"kR = {number(sound.kr_min, '.2f')} to {number(sound.kr_max, '.2f')}"
+            f"kR = {number(sound.kr_min, '.2f')} to {number(sound.kr_max, '.2f')}; level of the "
+            f"mean power over the band C0 {number(sound.C0_mean_db, '.1f')}, "
+            f"C1 {number(sound.C1_mean_db, '.1f')}"
         )
     heads = ("Mode", "C0 [Hz]", "C1 [Hz]", "shift", "loss C0", "loss C1", "MAC",
              "C0 [dB]", "C1 [dB]")  # fmt: skip
@@ -167,7 +198,7 @@ def _checks(summary: Summary) -> Table:
         (),
         (
             ("Energy balance, worst", number(balance.max_relative_residual, ".1e")),
-            ("Linear solves, worst residual", number(balance.max_solver_residual, ".1e")),
+            _sweep_check(summary),
             ("Sphere against wetted surface",
              f"{number(sound.max_surface_difference_db, '.2g')} dB"),
             ("Sphere against multipoles",
@@ -176,6 +207,13 @@ def _checks(summary: Summary) -> Table:
              ", ".join(f"{r} {number(q, '.3f')}" for r, q in summary.mesh.worst_quality.items())),
         ),
     )  # fmt: skip
+
+
+def _sweep_check(summary: Summary) -> tuple[str, str]:
+    if summary.sound_power.sweep == "reduced":
+        error = number(summary.sound_power.largest_estimate_db, ".1e")
+        return "Reduced sweep, largest estimated error", f"{error} dB"
+    return "Linear solves, worst residual", number(summary.balance.max_solver_residual, ".1e")
 
 
 def _run(summary: Summary) -> Table:

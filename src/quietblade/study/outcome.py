@@ -14,14 +14,10 @@ from quietblade import __version__
 from quietblade.case import Case
 from quietblade.errors import Notice
 from quietblade.flow import (
-    ViscousLoads,
     cavitation_number,
     inception_depth,
     inception_ship_speed,
     performance,
-    section_drag,
-    section_shedding,
-    viscous_loads,
 )
 from quietblade.flow.cavitation import suction
 from quietblade.flow.inflow import BladeFlow
@@ -38,6 +34,7 @@ from quietblade.study.statics import Statics
 from quietblade.study.translate import environment
 from quietblade.study.translate import inflow as inflow_of
 from quietblade.study.vibration import Vibration
+from quietblade.study.viscous import section_layer, shedding, viscous
 from quietblade.typing import FloatArray
 from quietblade.vibroacoustics.bands import Bands, band_mean
 from quietblade.vibroacoustics.matching import match
@@ -177,7 +174,8 @@ def _newton(state: StaticState) -> model.NewtonTable:
 def _section_curves(case: Case, flows: tuple[BladeFlow, ...]) -> model.SectionCurves:
     sections = [flow.sections for flow in flows]
     loads = [flow.loads for flow in flows]
-    drags = _viscous(case, flows)
+    layers = [section_layer(case, flow) for flow in flows]
+    drags = [viscous(case, flow, layer) for flow, layer in zip(flows, layers, strict=True)]
     water = environment(case)
     radius = [np.linalg.norm(s.reference[:, 1:], axis=1) for s in sections]
     root, tip = sections[0].reference[0, 2], sections[0].reference[-1, 2]
@@ -198,30 +196,16 @@ def _section_curves(case: Case, flows: tuple[BladeFlow, ...]) -> model.SectionCu
             [cavitation_number(s, load, water) for s, load in zip(sections, loads, strict=True)]
         ),
         shedding_frequency=np.array(
-            [section_shedding(s, load) for s, load in zip(sections, loads, strict=True)]
+            [shedding(flow, layer) for flow, layer in zip(flows, layers, strict=True)]
         ),
     )
-
-
-def _viscous(case: Case, flows: tuple[BladeFlow, ...]) -> list[ViscousLoads]:
-    """Drag of each state by the case's friction line, or none."""
-    line = case.flow.friction
-    return [
-        viscous_loads(
-            flow.sections,
-            flow.loads,
-            0.0 if line == "none" else section_drag(flow.sections, flow.loads, line),
-        )
-        for flow in flows
-    ]
 
 
 def _performance(case: Case, flows: tuple[BladeFlow, ...]) -> model.PerformanceFigures:
     """Figures of the rotor in each state."""
     inflow, water = inflow_of(case), environment(case)
     figures = [
-        performance(flow, inflow, drag)
-        for flow, drag in zip(flows, _viscous(case, flows), strict=True)
+        performance(flow, inflow, viscous(case, flow, section_layer(case, flow))) for flow in flows
     ]
     coupled = flows[-1].sections, flows[-1].loads
     return model.PerformanceFigures(

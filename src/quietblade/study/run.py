@@ -23,6 +23,7 @@ from quietblade.study.preflight import preflight
 from quietblade.study.sound import Sound, solve_sound
 from quietblade.study.statics import Statics, solve_statics
 from quietblade.study.vibration import Vibration, frequencies, solve_vibration
+from quietblade.study.viscous import singing
 from quietblade.typing import Progress, silent
 
 
@@ -88,6 +89,7 @@ def run_case(case: Case, folder: RunFolder, progress: Progress = silent) -> Resu
         *facts.notices,
         *mesh.notices,
         *statics.notices(case),
+        *_singing(case, statics, vibrations),
         *chain.from_iterable(_step2_notices(motions[n], vibrations[n], sounds[n]) for n in motions),
     )
     reports = {
@@ -152,6 +154,15 @@ def _motions(
             displacement = statics.state.displacement
             motions[name] = solve_mesh_motion(mesh, displacement, case.acoustics.gap)
     return motions
+
+
+def _singing(case: Case, statics: Statics, vibrations: dict[str, Vibration]) -> tuple[Notice, ...]:
+    """Shedding of the trailing edge against the wet modes under load, or at rest without them."""
+    if not vibrations:
+        return ()
+    vibration = vibrations.get("C1", next(iter(vibrations.values())))
+    flow = statics.state.coupled
+    return tuple(singing(case, flow, vibration.modes.frequency, vibration.naming.name))
 
 
 def _step2_notices(

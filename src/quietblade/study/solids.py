@@ -12,13 +12,11 @@ import numpy as np
 
 from quietblade.case import Case, Finding
 from quietblade.case.laminate import LaminateModel, LaminateWords, PlyWords
-from quietblade.case.library import library_material
 from quietblade.case.materials import (
     IsotropicWords,
     MooneyRivlinWords,
     NeoHookeanWords,
     OrthotropicWords,
-    SolidWords,
 )
 from quietblade.errors import MaterialError, Notice
 from quietblade.geometry import Blade
@@ -219,7 +217,7 @@ def _orthotropic(name: str, words: OrthotropicWords) -> "OrthotropicSVK":
 def _ply(case: Case, ply: PlyWords, repeat: int) -> "Ply":
     from quietblade import materials
 
-    words = _named(case, ply.material)
+    words = case.named_material(ply.material)
     share = None if ply.fraction is None else ply.fraction / repeat
     match words:
         case IsotropicWords():
@@ -229,11 +227,6 @@ def _ply(case: Case, ply: PlyWords, repeat: int) -> "Ply":
         case _:
             raise MaterialError(f"a ply cannot have the law {words.law} of {ply.material!r}")
     return materials.Ply(solid, ply.angle, ply.thickness, share)
-
-
-def _named(case: Case, name: str) -> SolidWords:
-    own = case.materials.get(name)
-    return own if own is not None else library_material(name)
 
 
 def _solid_regions(basis: "NodalBasis") -> str:

@@ -36,8 +36,7 @@ class Sound:
     multipoles : Multipoles
         Outgoing waves by the Kirchhoff-Helmholtz integral.
     residual : (f,) float array
-        ``||A x - b|| / ||b||`` of the whole system; of a reduced sweep at the snapshots only, nan
-        elsewhere.
+        ``||A x - b|| / ||b||`` of the whole system, nan in a reduced sweep.
     estimate : (f,) float array
         Estimated error of the power level by the reduced model [dB], nan in a direct sweep.
     snapshots : (k,) float array
@@ -124,15 +123,13 @@ def _reduced(case: Case, vibration: Vibration, frequency: FloatArray, progress: 
     progress("sweep", 0.6, "peaks")
     peaks = find_peaks(sweep, case.acoustics.band)
     nearest = _nearest(frequency, vibration.damped.frequency)
-    residual = np.full(frequency.shape, np.nan)
-    residual[nearest] = [model.residual(float(omega[k])) for k in nearest]
     return Sound(
         name=vibration.name,
         frequency=frequency,
         budget=model.budget(omega),
         work=model.work(omega),
         multipoles=waves,
-        residual=residual,
+        residual=np.full(frequency.shape, np.nan),
         estimate=sweep.estimate(frequency),
         snapshots=frequency[nearest],
         solutions=model.solution(omega[nearest]),

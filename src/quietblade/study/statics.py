@@ -8,7 +8,7 @@ import numpy as np
 
 from quietblade.case import Case
 from quietblade.errors import Notice
-from quietblade.flow import friction_notices, limits
+from quietblade.flow import limits
 from quietblade.geometry import Blade
 from quietblade.linalg import SolverReport
 from quietblade.mesh import Mesh
@@ -23,6 +23,7 @@ from quietblade.propulsion.tensors import principal_values
 from quietblade.propulsion.transfer import LoadTransfer
 from quietblade.study import solids, translate
 from quietblade.study.loads import steady_loads, support
+from quietblade.study.viscous import section_layer, viscous_notices
 from quietblade.typing import Progress
 
 POOR_TRANSFER = 0.5
@@ -76,8 +77,8 @@ class Statics:
         flow = self.state.coupled.sections, self.state.coupled.loads
         yield from translate.inflow(case).notices(*flow)
         yield from limits.notices(*flow, translate.environment(case))
-        if case.flow.friction != "none":
-            yield from friction_notices(*flow)
+        layer = section_layer(case, self.state.coupled)
+        yield from viscous_notices(case, self.state.coupled, layer)
         correction = self.state.surface.correction
         if correction > POOR_TRANSFER:
             yield Notice(

@@ -86,7 +86,7 @@ def krylov_vectors(
         own = np.zeros(len(basis), dtype=complex)
         length = float(np.linalg.norm(new))
         for _ in range(2):
-            part = basis.conj() @ new
+            part = (basis @ new.conj()).conj()  # no conjugate copy of the basis
             own += part
             new = new - part @ basis
         left = float(np.linalg.norm(new))

@@ -212,7 +212,7 @@ class SurfaceSources:
         return cls(points, np.asarray(middle), csr_matrix(flux), (x, y, z), water)
 
     def on(self, columns: FloatArray) -> "SurfaceSources":
-        """Sources as functions of the coordinates of vectors (k, n), instead of the unknowns."""
+        """Return the sources as functions of coordinates on vectors (k, n)."""
         flux, *doublet = (csr_matrix(part @ columns.T) for part in (self.flux, *self.doublet))
         return replace(self, flux=flux, doublet=(doublet[0], doublet[1], doublet[2]))
 

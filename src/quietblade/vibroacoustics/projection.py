@@ -2,6 +2,7 @@
 """A(omega) on a small space of real vectors, the fields split."""
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 
 import numpy as np
 import scipy.linalg
@@ -44,10 +45,11 @@ class Projection:
         self._columns = [np.zeros((0, len(field))) for field in self._fields]  # rows are columns
         self._count = [0] * len(self._fields)
         self._field = np.zeros(0, dtype=np.int64)  # of each column, in the order of entry
-        self._whole = {name: operators.terms[name] for name in operators.factors(1.0)}
+        self._whole = {
+            name: _Term.of(operators.terms[name], self._fields) for name in operators.factors(1.0)
+        }
         self._terms = {name: np.zeros((0, 0)) for name in self._whole}
-        for unit in np.eye(len(blocks.held)):
-            self._append(_HELD, unit)
+        self._append([(_HELD, unit) for unit in np.eye(len(blocks.held))])
 
     def copy(self) -> "Projection":
         """Space with the same columns, which grows on its own."""
@@ -81,15 +83,13 @@ class Projection:
     def extend(self, vectors: Iterable[AnyArray]) -> None:
         """Add vectors (n,) of the whole system."""
         for vector in vectors:
-            for field, unknowns in enumerate(self._fields[:_HELD]):
-                part = vector[unknowns]
-                length = self._length(field, part)
-                if length == 0.0:
-                    continue
-                for column in (part.real, part.imag) if np.iscomplexobj(part) else (part,):
-                    new = self._orthonormal(field, column / length)
-                    if new is not None:
-                        self._append(field, new)
+            self._append(
+                [
+                    (field, column)
+                    for field, unknowns in enumerate(self._fields[:_HELD])
+                    for column in self._new_columns(field, vector[unknowns])
+                ]
+            )
 
     def restricted(self, vector: AnyArray) -> AnyArray:
         """V^T b of vectors (n,) or (n, k): (size,) or (size, k)."""
@@ -113,10 +113,18 @@ class Projection:
 
     def at(self, omega: complex) -> ComplexArray:
         """V^T A(omega) V."""
-        total = np.zeros((self.size, self.size), dtype=complex)
-        for name, factor in self._operators.factors(omega).items():
-            total += factor * self._terms[name]
-        return total
+        return np.asarray(self.at_each(np.array([omega]))[0])
+
+    def at_each(self, omega: AnyArray, size: int | None = None) -> ComplexArray:
+        """V^T A(omega) V on the first columns, (f, size, size), at angular frequencies (f,)."""
+        kept = slice(self.size if size is None else size)
+        rows = [self._operators.factors(w) for w in np.asarray(omega, dtype=complex).tolist()]
+        factors = np.array([list(row.values()) for row in rows], dtype=complex)
+        terms = np.stack([self._terms[name][kept, kept] for name in rows[0]])
+        flat = terms.reshape(len(terms), -1)
+        # two real products: the terms have no imaginary part
+        total = (factors.real @ flat) + 1j * (factors.imag @ flat)
+        return np.asarray(total.reshape(len(rows), *terms.shape[1:]))
 
     def eigenpairs(
         self, omega: complex, size: int | None = None
@@ -127,8 +135,7 @@ class Projection:
         exact for first-order BGT; the quadratic eigenproblem is linearised.
         """
         points = omega * np.array([1.0 - _SPREAD, 1.0, 1.0 + _SPREAD])
-        kept = slice(self.size if size is None else size)
-        below, here, above = (self.at(point)[kept, kept] for point in points)
+        below, here, above = self.at_each(points, size)
         # In mu = omega' / omega - 1, a number of order one.
         first, second = (above - below) / (2.0 * _SPREAD), (above + below - 2.0 * here)
         second /= 2.0 * _SPREAD**2
@@ -145,12 +152,13 @@ class Projection:
         """Eigenpair of V^T A(omega) V itself, by Newton's method from one close by.
 
         That of `eigenpairs` is one of the interpolated factors.  If the iteration does not stay
-        close, the start is returned.
+        close, the start is returned.  The columns are the first ones, as many as coordinates.
         """
-        value, vector = omega, coordinates
+        value, vector, kept = omega, coordinates, slice(len(coordinates))
         for _ in range(_NEWTON_STEPS):
-            here, h = self.at(value), 1e-4 * abs(value)
-            slope = (self.at(value + h) - self.at(value - h)) / (2.0 * h)
+            h = 1e-4 * abs(value)
+            here, above, below = (self.at(w)[kept, kept] for w in (value, value + h, value - h))
+            slope = (above - below) / (2.0 * h)
             scale = 1.0 / np.sqrt(np.abs(here).max(axis=1))
             y = vector / scale
             y /= np.linalg.norm(y)
@@ -177,37 +185,103 @@ class Projection:
             whole[self._field == field] = part
         return whole
 
-    def _weighed(self, field: int, vector: FloatArray) -> FloatArray:
-        return np.asarray(self._mass @ vector) if field == 0 else vector
+    def _weighed(self, field: int, rows: FloatArray) -> FloatArray:
+        """Rows times the mass of the structure, or as they are."""
+        return np.ascontiguousarray((self._mass @ rows.T).T) if field == 0 else rows
 
-    def _orthonormal(self, field: int, vector: FloatArray) -> FloatArray | None:
-        """Part of a vector that is new, with unit length; None if there is none."""
-        basis = self._basis(field)
-        for _ in range(2):  # once more for what rounding has left
-            vector = vector - (basis @ self._weighed(field, vector)) @ basis
-        left = self._length(field, vector)
-        return vector / left if left > _LOST else None
+    def _new_columns(self, field: int, vector: AnyArray) -> list[FloatArray]:
+        """Orthonormal parts of a vector that its field does not hold yet, two at most."""
+        complex_valued = np.iscomplexobj(vector)
+        parts = np.stack([vector.real, vector.imag] if complex_valued else [vector])
+        weighed = self._weighed(field, parts)
+        length = np.sqrt(max(float(np.sum(parts * weighed)), 0.0))
+        basis, found = self._basis(field), np.zeros((0, parts.shape[1]))
+        if length == 0.0:
+            return []
+        for column, heavy in zip(parts / length, weighed / length, strict=True):
+            for known in (basis, found):
+                column = column - (known @ heavy) @ known  # noqa: PLW2901
+            # once more for what rounding has left
+            heavy = self._weighed(field, column[None])[0]  # noqa: PLW2901
+            left = float(column @ heavy)
+            for known in (basis, found):
+                rest = known @ heavy
+                column, left = column - rest @ known, left - float(rest @ rest)  # noqa: PLW2901
+            if left > _LOST**2:
+                found = np.concatenate([found, column[None] / np.sqrt(left)])
+        return list(found)
 
-    def _length(self, field: int, vector: AnyArray) -> float:
-        parts = (vector.real, vector.imag) if np.iscomplexobj(vector) else (vector,)
-        return float(np.sqrt(max(sum(p @ self._weighed(field, p) for p in parts), 0.0)))
-
-    def _append(self, field: int, column: FloatArray) -> None:
-        count = self._count[field]
-        if count == len(self._columns[field]):
-            room = np.empty((_ROOM, column.size))
-            self._columns[field] = np.concatenate([self._columns[field], room])
-        self._columns[field][count] = column
-        self._count[field] += 1
-        self._field = np.append(self._field, field)
-        full = np.zeros(self._operators.size)
-        full[self._fields[field]] = column
-        for name, old in self._terms.items():
-            row = self.restricted(np.asarray(self._whole[name] @ full))
+    def _append(self, columns: list[tuple[int, FloatArray]]) -> None:
+        """Take columns, each with the number of its field, and their products with all terms."""
+        if not columns:
+            return
+        full = np.zeros((self._operators.size, len(columns)))
+        for number, (field, column) in enumerate(columns):
+            count = self._count[field]
+            if count == len(self._columns[field]):
+                room = np.empty((_ROOM, column.size))
+                self._columns[field] = np.concatenate([self._columns[field], room])
+            self._columns[field][count] = column
+            self._count[field] += 1
+            full[self._fields[field], number] = column
+        old = self.size
+        self._field = np.append(self._field, [field for field, _ in columns])
+        bases = [self._basis(field) for field in range(len(self._fields))]
+        for name, term in self._whole.items():
+            rows = self._scattered(term.products(bases, full))
             grown = np.zeros((self.size, self.size))
-            grown[:-1, :-1] = old
-            grown[-1, :] = grown[:, -1] = row
+            grown[:old, :old] = self._terms[name]
+            grown[:, old:] = rows
+            grown[old:, :old] = rows[:old].T
             self._terms[name] = grown
+
+
+@dataclass(frozen=True, eq=False)
+class _Term:
+    """A term without its empty rows, which are most of them in many terms.
+
+    Attributes
+    ----------
+    matrix : (r, n) csr_matrix
+        The other rows; it shares the entries of the term.
+    places : tuple of (slice or array, slice or array)
+        For each field, which of its unknowns have a row here, and the numbers of these rows.
+    """
+
+    matrix: csr_matrix
+    places: tuple[tuple[slice | IntArray, slice | IntArray], ...]
+
+    @classmethod
+    def of(cls, term: csr_matrix, fields: tuple[IntArray, ...]) -> "_Term":
+        """Drop the empty rows of a term and find the others in the fields."""
+        filled = np.diff(term.indptr) > 0
+        starts = np.append(term.indptr[:-1][filled], term.indptr[-1])
+        matrix = csr_matrix(
+            (term.data, term.indices, starts), shape=(len(starts) - 1, term.shape[1]), copy=False
+        )
+        row = np.cumsum(filled) - 1
+        places = []
+        for unknowns in fields:
+            own = filled[unknowns]
+            places.append((_run(np.flatnonzero(own)), _run(row[unknowns[own]])))
+        return cls(matrix, tuple(places))
+
+    def products(self, bases: list[FloatArray], vectors: FloatArray) -> list[FloatArray]:
+        """V^T A X of each field's columns and of vectors (n, m), (count of the field, m)."""
+        moved = self.matrix @ vectors
+        return [
+            np.asarray(basis[:, own] @ moved[rows])
+            for basis, (own, rows) in zip(bases, self.places, strict=True)
+        ]
+
+
+def _run(numbers: IntArray) -> slice | IntArray:
+    """Numbers without gaps as a slice, which copies nothing."""
+    if len(numbers) == 0:
+        return slice(0, 0)
+    if numbers[-1] - numbers[0] == len(numbers) - 1 and np.all(np.diff(numbers) == 1):
+        return slice(int(numbers[0]), int(numbers[-1]) + 1)
+    return numbers
 
 
 def times(matrix: csr_matrix, x: ComplexArray) -> ComplexArray:

@@ -30,6 +30,7 @@ _DECIBEL = 10.0 / np.log(10.0)
 _JUDGED = 3  # successive models whose powers must agree
 _LEAST = 4  # vectors before the first judgement
 _LIGHT = 0.2  # loss factor up to which a mode can make a needle
+_AT_ONCE = 64  # frequencies whose matrices are in memory together
 _STAGE = "reduced model"
 
 
@@ -90,13 +91,13 @@ class ReducedModel:
 
     def coordinates(self, omega: FloatArray) -> ComplexArray:
         """Solutions in the columns, (f, size) or (f, k, size), at angular frequencies [rad/s]."""
-        load = self.reduced_load.T.astype(complex)
-        kept = slice(self.size)
+        load = self.reduced_load.reshape(-1, self.size).T.astype(complex)
+        at = np.atleast_1d(omega)
         rows = [
-            np.linalg.solve(self.space.at(complex(w))[kept, kept], load).T
-            for w in np.atleast_1d(omega)
+            np.linalg.solve(self.space.at_each(part, self.size), load).swapaxes(1, 2)
+            for part in np.array_split(at, max(1, -(-len(at) // _AT_ONCE)))
         ]
-        return np.array(rows).reshape(len(rows), *self.load.shape[:-1], self.size)
+        return np.concatenate(rows).reshape(len(at), *self.load.shape[:-1], self.size)
 
     def columns(self) -> FloatArray:
         """Vectors (size, n) that the coordinates are factors of."""
@@ -226,8 +227,12 @@ def error_estimate(
     makes in the larger space: the hierarchical estimate of the smaller one's error.  The larger
     one's error is less by the rate of convergence.  Of several loads it is the worst.
     """
-    power = model.radiated(omega)
-    changes = [np.abs(power - other.radiated(omega)) for other in smaller]
+    return _largest_change(model.radiated(omega), [other.radiated(omega) for other in smaller])
+
+
+def _largest_change(power: FloatArray, others: Sequence[FloatArray]) -> FloatArray:
+    """Largest difference of powers (f,) or (f, k) from others, as a level (f,) [dB]."""
+    changes = [np.abs(power - other) for other in others]
     with np.errstate(divide="ignore", invalid="ignore"):
         ratio = np.max(changes, axis=0) / np.abs(power)
     estimate = np.where(np.isfinite(ratio), _DECIBEL * ratio, np.inf)
@@ -278,6 +283,7 @@ def reduce_system(
         raise ValueError("the frequencies of a sweep have to be a list of positive numbers [Hz]")
     space = Projection(operators)
     models: list[ReducedModel] = []
+    powers: list[FloatArray] = []  # theirs, at the frequencies asked for
     points: list[float] = []
     history: list[float] = []
     worst, judged, estimate = float(0.5 * (at.min() + at.max())), at, np.full(at.shape, np.inf)
@@ -289,9 +295,10 @@ def reduce_system(
         for vectors in islice(_together(operators, omega, factor, load), most_vectors):
             space.extend(vectors)
             models = [*models, ReducedModel(operators, space, load, space.size)][-_JUDGED:]
+            powers = [*powers, models[-1].radiated(2.0 * np.pi * at)][-_JUDGED:]
             judged, estimate = at, np.full(at.shape, np.inf)
             if len(history) + 1 >= _LEAST:
-                judged, estimate = _judge(models, at, tolerance)
+                judged, estimate = _judge(models, powers, at, tolerance)
             history.append(float(estimate.max()))
             progress(_STAGE, None, f"{len(history)} vectors, error {history[-1]:.1e} dB")
             if history[-1] <= tolerance:
@@ -323,13 +330,17 @@ def _together(
 
 
 def _judge(
-    models: Sequence[ReducedModel], frequency: FloatArray, tolerance: float
+    models: Sequence[ReducedModel],
+    powers: Sequence[FloatArray],
+    frequency: FloatArray,
+    tolerance: float,
 ) -> tuple[FloatArray, FloatArray]:
     """Frequencies and estimates; at the resonances too where the others are good enough."""
-    *smaller, model = models
-    estimate = error_estimate(model, smaller, 2.0 * np.pi * frequency)
+    estimate = _largest_change(powers[-1], powers[:-1])
     if estimate.max() > tolerance or len(frequency) == 1:
         return frequency, estimate
+    *smaller, model = models
     needles, _ = model.light_modes((float(frequency.min()), float(frequency.max())))
-    judged = np.union1d(frequency, needles)
-    return judged, error_estimate(model, smaller, 2.0 * np.pi * judged)
+    between = error_estimate(model, smaller, 2.0 * np.pi * needles)
+    judged, first = np.unique(np.concatenate([frequency, needles]), return_index=True)
+    return judged, np.concatenate([estimate, between])[first]

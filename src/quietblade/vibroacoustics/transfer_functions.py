@@ -77,6 +77,8 @@ class RootPath:
     def power(self, impedance: ComplexArray) -> FloatArray:
         """Power into a support, 1/2 Re(v^H Z v), (f, l) [W]: the structure-borne path.
 
+        (theory: S2-79)
+
         Parameters
         ----------
         impedance : (f, 6, 6), (6, 6), (f, 6) or (6,) array

@@ -74,6 +74,7 @@ def _drawings(folder: RunFolder, result: Result) -> Mapping[str, Drawing]:
     drawings: dict[str, Drawing] = {
         "mesh": lambda: scenes.draw_mesh(folder),
         "deformed": _deformed(folder, result, None),
+        "stress": lambda: scenes.draw_stress(folder, result),
         **_section_drawings([result]),
         "cavitation": lambda: sections.draw_cavitation(result),
         "convergence": lambda: sections.draw_convergence(result),

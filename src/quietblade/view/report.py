@@ -47,14 +47,15 @@ $body
 _CAPTIONS = {
     "mesh": "Blade, film and mesh.",
     "deformed": "The blade under its own lift and at rest, with the shear strain of the film.",
+    "stress": "Von Mises stress on the deformed blade.",
     "mid-section-normalised": "The mid section over its chord: what the deformation does to its "
     "camber.",
     "mid-section": "The mid section in space: deflection and blade angle.",
     "blade-angle": "Blade angle along the span.",
     "lift-coefficient": "Lift coefficient along the span: rigid blade, rigid blade's load applied "
     "once, and equilibrium.",
-    "cavitation": "Suction along the span; cavitation begins where it reaches the cavitation number "
-    "of the section at the top of its turn.",
+    "cavitation": "Suction along the span; cavitation begins where it reaches the cavitation "
+    "number of the section at the top of its turn.",
     "convergence": "How the loop between flow and structure converged.",
     "sound-power": "Radiated sound power, with the wet modes that make the peaks.",
     "power-paths": "Where the injected power goes; the multipoles do not depend on the waves that "

@@ -91,6 +91,34 @@ def draw_deformed(folder: RunFolder, result: Result, largest: float | None = Non
 
 
 @styled
+def draw_stress(folder: RunFolder, result: Result) -> Figure:
+    """Von Mises stress on both faces of the deformed blade."""
+    rigid = _solid(read_fields(folder.static_fields))
+    blade = region(moved(rigid, field_values(rigid, "displacement")), "blade")
+    stress = 1e-6 * field_values(blade, "von_mises_stress", "blade")
+    limits = (0.0, float(np.nanmax(stress)))
+    blade.point_data["megapascal"] = stress
+    stage = Stage((2400, 1500))
+    stage.add(curved_surface(blade), scalars="megapascal", cmap=SEQUENTIAL, clim=limits)
+    stage.add(sharp_edges(blade), color=_LINES, line_width=1.5)
+    (image,) = cropped([stage.picture(FROM_UPSTREAM)])
+    figure = new_figure(1.15 + WIDTH * image.shape[0] / image.shape[1])
+    axes = figure.subplots()
+    table = result.static.stress
+    row = table.region.index("blade")
+    x, y, z = table.von_mises_place[row]
+    _show(
+        axes, image,
+        f"{result.title}: von Mises stress, deformed to scale\nLargest "
+        f"{1e-6 * table.von_mises[row]:.0f} MPa at ({x:.3f}, {y:.3f}, {z:.3f}) m of the blade at "
+        "rest",
+    )  # fmt: skip
+    bar = _color_bar(figure, axes, limits, SEQUENTIAL, location="bottom", shrink=0.6, aspect=40)
+    bar.set_label("Von Mises stress of the blade [MPa]")
+    return figure
+
+
+@styled
 def draw_mode_shapes(
     result: Result, configuration: str, pictures: Mapping[str, AnyArray]
 ) -> Figure:

@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A blade of a case under its steady load, ready for systems with any condition and any loss."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import ngsolve as ngs
+import numpy as np
+
+from quietblade.case import Case
+from quietblade.case.presets import preset_text
+from quietblade.mesh import Mesh, build_mesh
+from quietblade.mesh.motion import solve_mesh_motion
+from quietblade.propulsion.tangent import Tangent, compute_tangent
+from quietblade.study import translate
+from quietblade.study.preflight import preflight
+from quietblade.study.statics import solve_statics
+from quietblade.typing import FloatArray, silent
+from quietblade.vibroacoustics.dtn import fitted_dtn
+from quietblade.vibroacoustics.excitation import pressure_force
+from quietblade.vibroacoustics.loss import Loss
+from quietblade.vibroacoustics.multipoles import SurfaceSources
+from quietblade.vibroacoustics.operators import Operators, build_operators
+from quietblade.vibroacoustics.radiation import Bgt1, RadiationCondition
+
+
+@dataclass(frozen=True, eq=False)
+class LoadedBlade:
+    """The blade on C1, what the sweeps of all its systems have in common.
+
+    Attributes
+    ----------
+    case : Case
+    mesh : Mesh
+    tangent : Tangent
+        Of the solid on C1.
+    displacement : (nodes, 3) array
+        Of the blade's nodes from C0 to C1 [m].
+    """
+
+    case: Case
+    mesh: Mesh
+    tangent: Tangent
+    displacement: FloatArray
+
+    @cached_property
+    def motion(self) -> ngs.GridFunction:
+        """Displacement of the whole mesh from C0 to C1 [m]."""
+        motion = solve_mesh_motion(self.mesh, self.displacement, self.case.acoustics.gap)
+        field = ngs.GridFunction(ngs.VectorH1(self.mesh.fem, order=2))
+        field.vec.FV().NumPy()[:] = self.mesh.basis.to_dofs(motion.displacement)
+        return field
+
+    def in_sphere(self, radius: float, fixed: float = 0.65) -> "LoadedBlade":
+        """Return the same blade, cell by cell, in another sphere [m].
+
+        The water's nodes within ``fixed`` [m] of the centre stay, blade included; those outside
+        move along their rays, in proportion.
+        """
+        away = self.mesh.nodes - self.mesh.centre
+        distance = np.linalg.norm(away, axis=1)
+        beyond = np.maximum(distance - fixed, 0.0)
+        stretch = (radius - fixed) / (self.mesh.radius - fixed)
+        moved = np.minimum(distance, fixed) + stretch * beyond
+        ratio = np.where(beyond > 0.0, moved / np.maximum(distance, fixed), 1.0)
+        nodes = self.mesh.centre + ratio[:, None] * away
+        return replace(self, mesh=replace(self.mesh, nodes=nodes, radius=radius))
+
+    def system(self, condition: RadiationCondition | None = None, loss: Loss = None) -> Operators:
+        """A(omega) with a condition on the sphere, first-order BGT if left out, and a loss.
+
+        Without a loss, that of the case.
+        """
+        with ngs.TaskManager():
+            return build_operators(
+                self.mesh.fem,
+                stiffness=self.tangent.stiffness(self.case.acoustics.tangent),
+                loss=self.tangent.losses(self.case.acoustics.loss) if loss is None else loss,
+                mass=self.tangent.mass,
+                water=translate.water(self.case),
+                radius=self.mesh.radius,
+                motion=self.motion,
+                condition=Bgt1() if condition is None else condition,
+            )
+
+    def exact_condition(self) -> RadiationCondition:
+        """Dirichlet-to-Neumann map up to the degree that the blade and the band need."""
+        return fitted_dtn(
+            self.mesh.fem,
+            translate.REACH * self.case.acoustics.band[1],
+            sound_speed=self.case.water.sound_speed,
+            radius=self.mesh.radius,
+            accuracy=self.case.acoustics.radiation_accuracy,
+            motion=self.motion,
+        )
+
+    def load(self, operators: Operators) -> FloatArray:
+        """Right-hand side of the excitation (n,) [N]."""
+        force = pressure_force(self.mesh.fem, self.case.excitation.pressure, motion=self.motion)
+        return np.asarray(operators.right_hand_side(force))
+
+    def sources(self, operators: Operators) -> SurfaceSources:
+        """For the outgoing waves."""
+        return SurfaceSources.of(self.mesh.fem, self.mesh.basis, operators, motion=self.motion)
+
+
+def loaded_blade(changes: Mapping[str, object], preset: str = "paper-composite") -> LoadedBlade:
+    """Solve the steady problem of a preset with some of its keys changed.
+
+    Parameters
+    ----------
+    changes : mapping
+        Values by key, as ``{"mesh.size": "40 mm"}``.
+    preset : str
+    """
+    case = Case.parse(preset_text(preset)).varied(dict(changes))
+    blade = preflight(case).blade
+    mesh = build_mesh(blade, translate.mesh_spec(case))
+    statics = solve_statics(case, blade, mesh, silent)
+    tangent = compute_tangent(statics.structure, statics.state.structure)
+    return LoadedBlade(case, mesh, tangent, statics.state.displacement)
