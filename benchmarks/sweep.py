@@ -35,7 +35,7 @@ from quietblade.vibroacoustics.peaks import find_peaks
 from quietblade.vibroacoustics.power import level, radiated_power
 from quietblade.vibroacoustics.reduced import reduce_system
 from quietblade.vibroacoustics.sweep import solve_point
-from verification.acoustics_blade import LoadedBlade, loaded_blade
+from verification.acoustics_blade import WetBlade, loaded_blade
 
 THREADS = "2"
 SIZE = "12 mm"
@@ -78,7 +78,7 @@ def make_systems(folder: Path, size: str) -> None:
         write_system(folder / name, blade, operators)
 
 
-def write_system(file: Path, blade: LoadedBlade, operators: Operators) -> None:
+def write_system(file: Path, blade: WetBlade, operators: Operators) -> None:
     """Write one system for another process."""
     file.write_bytes(pickle.dumps((operators, blade.load(operators)), protocol=5))
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A blade of a case under its steady load, ready for systems with any condition and any loss."""
+"""A blade of a case, at rest or under its steady load, for systems with any condition and loss."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -10,10 +10,12 @@ import numpy as np
 
 from quietblade.case import Case
 from quietblade.case.presets import preset_text
+from quietblade.geometry import Blade
 from quietblade.mesh import Mesh, build_mesh
 from quietblade.mesh.motion import solve_mesh_motion
+from quietblade.propulsion.structure import Structure
 from quietblade.propulsion.tangent import Tangent, compute_tangent
-from quietblade.study import translate
+from quietblade.study import solids, translate
 from quietblade.study.preflight import preflight
 from quietblade.study.statics import solve_statics
 from quietblade.typing import FloatArray, silent
@@ -26,33 +28,35 @@ from quietblade.vibroacoustics.radiation import Bgt1, RadiationCondition
 
 
 @dataclass(frozen=True, eq=False)
-class LoadedBlade:
-    """The blade on C1, what the sweeps of all its systems have in common.
+class WetBlade:
+    """A blade on C0 or C1: what the sweeps of all its systems have in common.
 
     Attributes
     ----------
     case : Case
     mesh : Mesh
     tangent : Tangent
-        Of the solid on C1.
-    displacement : (nodes, 3) array
-        Of the blade's nodes from C0 to C1 [m].
+        Of the solid.
+    displacement : (nodes, 3) array or None
+        Of the blade's nodes from C0 to C1 [m]; None at rest.
     """
 
     case: Case
     mesh: Mesh
     tangent: Tangent
-    displacement: FloatArray
+    displacement: FloatArray | None
 
     @cached_property
-    def motion(self) -> ngs.GridFunction:
-        """Displacement of the whole mesh from C0 to C1 [m]."""
+    def motion(self) -> ngs.GridFunction | None:
+        """Displacement of the whole mesh from C0 to C1 [m], if there is one."""
+        if self.displacement is None:
+            return None
         motion = solve_mesh_motion(self.mesh, self.displacement, self.case.acoustics.gap)
         field = ngs.GridFunction(ngs.VectorH1(self.mesh.fem, order=2))
         field.vec.FV().NumPy()[:] = self.mesh.basis.to_dofs(motion.displacement)
         return field
 
-    def in_sphere(self, radius: float, fixed: float = 0.65) -> "LoadedBlade":
+    def in_sphere(self, radius: float, fixed: float = 0.6) -> "WetBlade":
         """Return the same blade, cell by cell, in another sphere [m].
 
         The water's nodes within ``fixed`` [m] of the centre stay, blade included; those outside
@@ -105,8 +109,8 @@ class LoadedBlade:
         return SurfaceSources.of(self.mesh.fem, self.mesh.basis, operators, motion=self.motion)
 
 
-def loaded_blade(changes: Mapping[str, object], preset: str = "paper-composite") -> LoadedBlade:
-    """Solve the steady problem of a preset with some of its keys changed.
+def resting_blade(changes: Mapping[str, object], preset: str = "paper-composite") -> WetBlade:
+    """Make the blade of a preset on C0, with some of the preset's keys changed.
 
     Parameters
     ----------
@@ -114,9 +118,21 @@ def loaded_blade(changes: Mapping[str, object], preset: str = "paper-composite")
         Values by key, as ``{"mesh.size": "40 mm"}``.
     preset : str
     """
-    case = Case.parse(preset_text(preset)).varied(dict(changes))
-    blade = preflight(case).blade
-    mesh = build_mesh(blade, translate.mesh_spec(case))
-    statics = solve_statics(case, blade, mesh, silent)
+    case, shape, mesh = _meshed(changes, preset)
+    materials = solids.build_materials(case, shape, mesh.basis)
+    structure = Structure(mesh.fem, materials, basis=mesh.basis)
+    return WetBlade(case, mesh, compute_tangent(structure, structure.rest()), None)
+
+
+def loaded_blade(changes: Mapping[str, object], preset: str = "paper-composite") -> WetBlade:
+    """Make the blade of a preset on C1: the same, in equilibrium with the flow."""
+    case, shape, mesh = _meshed(changes, preset)
+    statics = solve_statics(case, shape, mesh, silent)
     tangent = compute_tangent(statics.structure, statics.state.structure)
-    return LoadedBlade(case, mesh, tangent, statics.state.displacement)
+    return WetBlade(case, mesh, tangent, statics.state.displacement)
+
+
+def _meshed(changes: Mapping[str, object], preset: str) -> tuple[Case, Blade, Mesh]:
+    case = Case.parse(preset_text(preset)).varied(dict(changes))
+    shape = preflight(case).blade
+    return case, shape, build_mesh(shape, translate.mesh_spec(case))

@@ -28,7 +28,7 @@ def test_fast_limit_is_reached_where_it_is_said() -> None:
 
 
 @given(
-    re=st.floats(-1.0, 1.0), im=st.floats(-1.0, 1.0), pitch=st.floats(-3.0, 3.0),
+    re=st.floats(0.1, 1.0), im=st.floats(-1.0, 1.0), pitch=st.floats(-3.0, 3.0),
     speed=st.floats(1.0, 10.0),
 )  # fmt: skip
 def test_power_lost_to_a_fast_stream(re: float, im: float, pitch: float, speed: float) -> None:

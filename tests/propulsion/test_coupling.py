@@ -6,9 +6,9 @@ import pytest
 
 from quietblade.errors import ConvergenceError, GeometryError
 from quietblade.flow.inflow import StripInflow, strip_loads
-from quietblade.geometry import Blade, NacaFourDigit, constant, formula
+from quietblade.geometry import Blade
 from quietblade.materials import IsotropicSVK, MooneyRivlin
-from quietblade.mesh import Mesh, MeshSpec, Patch, build_mesh
+from quietblade.mesh import Mesh, MeshSpec, build_mesh
 from quietblade.mesh.surface import SurfaceQuadrature
 from quietblade.propulsion.coupling import Method, StaticState, solve_static
 from quietblade.propulsion.divergence import divergence_pressure
@@ -16,6 +16,7 @@ from quietblade.propulsion.loading import Spin
 from quietblade.propulsion.structure import Structure
 from quietblade.propulsion.transfer import LoadTransfer
 from tests.conftest import PATCH, make_twisted_blade
+from verification.flow_coupling_wing import plastic_wing
 
 FILM = MooneyRivlin("film", 1400.0, 0.238e6, 0.523e6, 2.2e9, 0.21)
 STATIONS = np.linspace(0.0, 1.0, 41)
@@ -31,34 +32,9 @@ def parts(mesh: Mesh, blade: Blade, modulus: float) -> tuple[Structure, LoadTran
     return structure, LoadTransfer(surface, blade, STATIONS, blade.section(STATIONS, 121))
 
 
-def bar(sweep: float, modulus: float = 1e9, ratio: float = 0.3) -> tuple[Structure, LoadTransfer]:
-    """A small plastic wing, 5 cells long, swept by so many metres at its tip."""
-    blade = Blade(
-        hub_radius=0.2,
-        span=0.6,
-        chord=constant(0.2),
-        blade_angle=constant(np.radians(1.0 if sweep else 4.0)),
-        sweep=formula(f"{sweep}*s", 1.0),
-        rake=constant(0.0),
-        thickness=constant(0.1),
-        camber=constant(0.0),
-        family=NacaFourDigit(),
-        trailing_edge=0.02,
-        alignment=0.5,
-        film=None,
-    )
-    patch = Patch(1, (0.8, 0.96), (0.3, 0.7))
-    mesh = build_mesh(blade, MeshSpec(0.1, (0.0, 0.0, 0.5), 0.9, patch, 0.5))
-    plastic = IsotropicSVK("plastic", 1000.0, modulus, ratio)
-    structure = Structure(mesh.fem, {"blade": plastic}, spin=Spin(0.58), basis=mesh.basis)
-    surface = SurfaceQuadrature(mesh.nodes, mesh.interface)
-    s = np.linspace(0.0, 1.0, 21)
-    return structure, LoadTransfer(surface, blade, s, blade.section(s, 61), weights=8)
-
-
 @pytest.fixture(scope="module")
 def both() -> tuple[Structure, LoadTransfer]:
-    return bar(0.0)
+    return plastic_wing(0.0, poisson_ratio=0.3, incidence=0.07)
 
 
 @pytest.fixture(scope="module")
@@ -180,14 +156,14 @@ def test_too_few_passes_are_kept_and_marked(
 
 
 def test_blade_without_equilibrium_is_an_error() -> None:
-    structure, transfer = bar(0.0, 1e5)  # softer than rubber
+    structure, transfer = plastic_wing(0.0, modulus=1e5)  # softer than rubber
     with pytest.raises((ConvergenceError, GeometryError)):
         solve_static(structure, transfer, StripInflow(15.0, 3.0), method="fixed-point")
 
 
 def test_wash_out_is_no_divergence() -> None:
     """Swept back, bending takes lift away: an equilibrium that a plain fixed point misses."""
-    wing = bar(0.4, ratio=0.0)
+    wing = plastic_wing(0.4)
     stream = StripInflow(6.0, 0.0)
     state = solve_static(*wing, stream, chained=False)
     assert state.converged
@@ -210,7 +186,7 @@ def test_wash_out_is_no_divergence() -> None:
 
 def test_equilibrium_beyond_divergence_is_said_to_be_unstable() -> None:
     """Swept forward, bending adds lift; the equilibrium that is left is upside down."""
-    wing = bar(-0.4, ratio=0.0)
+    wing = plastic_wing(-0.4)
     state = solve_static(*wing, StripInflow(6.0, 0.0), chained=False)
     assert state.kind == "divergence"
     assert state.divergence < 0.3

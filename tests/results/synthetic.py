@@ -178,6 +178,7 @@ def make_static(shape: Shape) -> m.StaticResult:
         coupling_method="fixed-point",
         coupling_kind="steady",
         load_fraction=1.0,
+        divergence_ratio=float("nan"),
         max_film_shear_strain=shape.shear,
         film_shear_strain_p99=0.82 * shape.shear,
         max_film_shear_strain_place=np.array([0.02, 0.0, 0.27]),

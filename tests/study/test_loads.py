@@ -20,6 +20,7 @@ from quietblade.propulsion.loads import (
 from quietblade.study import translate
 from quietblade.study.loads import steady_loads, support
 from quietblade.study.statics import solve_statics
+from quietblade.study.vibration import solve_vibration
 from quietblade.typing import silent
 from tests.study.test_run import COARSE
 
@@ -105,5 +106,11 @@ def test_equilibrium_with_loads_on_springs(case: Case, mesh: Mesh) -> None:
     volume = translate.build_blade(words).volume()
     assert weight.force[1] == pytest.approx(-9.81 * 2500.0 * volume, rel=0.1)  # film, coarse mesh
     assert statics.stress.reaction.force_imbalance < 1e-5
+    # step 2 stands on the springs too
+    rest, sprung = (
+        solve_vibration(c, translate.build_blade(c), mesh, s, None, silent).modes.frequency[0]
+        for c, s in ((case, clamped), (words, statics))
+    )
+    assert 0.2 * rest < sprung < 0.95 * rest
     # the springs alone turn the blade by its root moment over their stiffness
     assert statics.state.tip_displacement[1] > 1.2 * clamped.state.tip_displacement[1]

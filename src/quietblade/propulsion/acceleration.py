@@ -34,7 +34,7 @@ Map = Callable[[FloatArray], FloatArray]
 
 
 class SecantModel:
-    r"""Linear model J of a map in the span of a few steps (theory: S1-91).
+    r"""Linear model J of a map in the span of a few steps (theory: S1-92).
 
     With the steps :math:`\Delta X` and the changes :math:`\Delta G` of the map along them,
     :math:`J = \Delta G\, \Delta X^+`.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-r"""Flow and structure in equilibrium: the propulsion step (theory: S1-30, S1-90).
+r"""Flow and structure in equilibrium: the propulsion step (theory: S1-30).
 
 The paper's iteration is ``u^0 = 0, p^k = F(u^{k-1}), u^k = S(p^k)``, ended when
 ``|u^k - u^{k-1}| / |u^{k-1}|`` falls below the tolerance.  Its first pass is the *chained*

@@ -124,8 +124,7 @@ class _Corrections:
         self.problem, self.fraction, self.limits = problem, fraction, limits
         self.structure, self.equations = problem.structure, problem.structure.equations
         self.x, self.displacement = start.state.unknowns, start.displacement
-        kept = self.structure._kept_state is start.state
-        self.solve: Solve | None = self.structure._kept_tangent if kept else None
+        self.solve: Solve | None = self.structure.kept(start.state)
         self.size = np.nan
         self.strong = False
         self.model = self.latest = SecantModel([], [])
@@ -181,7 +180,7 @@ class _Corrections:
         loading = problem.loading(surface, self.fraction)
         near = problem.state(self.x, loading)
         # `Structure.solve` starts with the tangent of its last result
-        structure._kept_state, structure._kept_tangent = near, self.solve
+        structure.keep(near, self.solve)
         state = structure.solve(
             loading.pressure,
             near,

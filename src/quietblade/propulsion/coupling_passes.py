@@ -26,7 +26,7 @@ def solve_by_passes(
     limits: Limits,
     progress: Progress,
 ) -> Stage:
-    """Iterate ``u -> S(F(u))`` at a fraction of the dynamic pressure (theory: S1-90).
+    """Iterate ``u -> S(F(u))`` at a fraction of the dynamic pressure (theory: S1-30).
 
     Parameters
     ----------

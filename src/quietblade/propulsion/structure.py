@@ -219,7 +219,7 @@ class Structure:
             begin.unknowns,
             lambda fraction: equations.set_loading(begin.loading.towards(target, fraction)),
             wanted,
-            solve=self._kept_tangent if start is not None and start is self._kept_state else None,
+            solve=None if start is None else self.kept(start),
             progress=progress,
         )
         state = self._state(path, begin.loading.towards(target, path.fraction), wanted)
@@ -229,8 +229,16 @@ class Structure:
             if on_failure == "raise":
                 raise failure
             return failure.state
-        self._kept_state, self._kept_tangent = state, path.solve
+        self.keep(state, path.solve)
         return state
+
+    def keep(self, state: StructureState, tangent: Solve | None) -> None:
+        """Keep the factored tangent of a state, for a solution that starts from it."""
+        self._kept_state, self._kept_tangent = state, tangent
+
+    def kept(self, state: StructureState) -> Solve | None:
+        """Return the tangent that is kept for this very state, if there is one."""
+        return self._kept_tangent if state is self._kept_state else None
 
     def forget(self) -> None:
         """Free the memory of the last tangent, which the next `solve` would start with."""

@@ -29,7 +29,7 @@ Pressure, sections to surface
     would take changes as large as the pressure itself.) The moments across the span are conserved
     as well as the weights resolve the span; what is left is reported. Any conservative transfer
     needs such conditions; compare Farhat, Lesoinne and Le Tallec, Comput. Methods Appl. Mech.
-    Engrg. 157 (1998) 95-114. Which work is conserved with the loads: theory S1-91.
+    Engrg. 157 (1998) 95-114. Which work is conserved with the loads: (theory: S1-91).
 
 The root face is clamped and no part of the surface. The tip face and the trailing-edge face take
 the pressures between the upper and the lower side, see `quietblade.propulsion.section_pressure`.

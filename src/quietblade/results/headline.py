@@ -81,6 +81,7 @@ def _static(result: Result) -> StaticSummary:
         estimated_error=float(static.history.error[-1]),
         method=static.coupling_method,
         kind=static.coupling_kind,
+        divergence_ratio=static.divergence_ratio,
         changes=tuple(static.history.relative_change.tolist()),
         converged=static.converged,
     )

@@ -190,6 +190,7 @@ class StaticResult(Record):
     coupling_method: str
     coupling_kind: str
     load_fraction: float
+    divergence_ratio: float
     max_film_shear_strain: float = NAN
     film_shear_strain_p99: float = NAN
     max_film_shear_strain_place: FloatArray = field(default_factory=lambda: np.full(3, NAN))

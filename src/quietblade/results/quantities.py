@@ -148,6 +148,8 @@ _GROUPS: dict[str, tuple[Quantity, ...]] = {
         _text("coupling_method", "", "newton, fixed-point, aitken or anderson"),
         _text("coupling_kind", "",
               "steady, wash-out, divergence, post-divergence or unresolved"),
+        _q("divergence_ratio", "q_D/q", "1", "",
+           "estimated dynamic pressure of static divergence over that of the case; NaN: none"),
         _q("load_fraction", "", "1", "", "fraction of the dynamic pressure that the state is for"),
     ),
     "static/history": (

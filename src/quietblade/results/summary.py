@@ -53,6 +53,7 @@ class StaticSummary(_Part):
     estimated_error: Number = _of("static/history/error", "the last one")
     method: str = _of("static/coupling_method")
     kind: str = _of("static/coupling_kind")
+    divergence_ratio: Number = _of("static/divergence_ratio")
     changes: tuple[Number, ...] = _of("static/history/relative_change", "of each pass")
     converged: bool = _of("static/converged")
 

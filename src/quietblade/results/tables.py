@@ -90,6 +90,9 @@ def _static(summary: Summary) -> Table:
             ("Coupling",
              f"{state}, {static.method}, {static.iterations} iterations, last change {change}, "
              f"estimated error {number(static.estimated_error, '.1e')}; {static.kind}"),
+            ("  static divergence",
+             "none in sight" if static.divergence_ratio is None
+             else f"at {number(static.divergence_ratio, '.3g')} times the dynamic pressure"),
             ("  change by pass", ", ".join(number(c, ".1e") for c in static.changes)),
         ),
     )  # fmt: skip

@@ -70,6 +70,7 @@ def static_result(case: Case, statics: Statics) -> model.StaticResult:
         coupling_method=state.method,
         coupling_kind=state.kind,
         load_fraction=state.fraction,
+        divergence_ratio=state.divergence if np.isfinite(state.divergence) else np.nan,
         max_blade_shear_strain=statics.blade_shear,
     )
     shear = statics.shear

@@ -12,6 +12,7 @@ from quietblade.errors import Notice
 from quietblade.geometry import Blade
 from quietblade.linalg import Precision, SolverChain, SolverReport, make_solver
 from quietblade.mesh import Mesh
+from quietblade.mesh.model import INTERFACE
 from quietblade.mesh.motion import MeshMotion
 from quietblade.mesh.surface import SurfaceQuadrature
 from quietblade.propulsion.tangent import compute_tangent
@@ -24,7 +25,7 @@ from quietblade.vibroacoustics.grid import refined_grid
 from quietblade.vibroacoustics.modes import WetModes, wet_modes
 from quietblade.vibroacoustics.multipoles import SurfaceSources
 from quietblade.vibroacoustics.naming import Naming, name_modes
-from quietblade.vibroacoustics.operators import Operators, build_operators
+from quietblade.vibroacoustics.operators import CLAMPED, Operators, build_operators
 from quietblade.vibroacoustics.reduced import ReducedSweep, reduce_system
 
 ABOVE_BAND = 1.2
@@ -98,6 +99,7 @@ def solve_vibration(
     name = "C0" if motion is None else "C1"
     state = statics.structure.rest() if motion is None else statics.state.structure
     tangent = compute_tangent(statics.structure, state)
+    on_springs = case.root.support == "elastic"  # then the root face moves in the water too
     field = None if motion is None else _field(mesh, motion)
     with ngs.TaskManager():
         operators = build_operators(
@@ -108,6 +110,8 @@ def solve_vibration(
             water=translate.water(case),
             radius=mesh.radius,
             motion=field,
+            clamped=None if on_springs else CLAMPED,
+            wetted=f"{INTERFACE}|{CLAMPED}" if on_springs else INTERFACE,
             condition=translate.radiation(case, mesh, field),
         )
         force = pressure_force(mesh.fem, case.excitation.pressure, motion=field)

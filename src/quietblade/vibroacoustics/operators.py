@@ -196,8 +196,14 @@ def product_space(fem: ngs.Mesh) -> ngs.ProductSpace:
     return displacement * pressure * potential_space(fem)
 
 
-def free_unknowns(fem: ngs.Mesh) -> tuple[IntArray, Blocks]:
+def free_unknowns(fem: ngs.Mesh, clamped: str | None = CLAMPED) -> tuple[IntArray, Blocks]:
     """Numbers of the free unknowns in V * P * Q, and where each field is among them.
+
+    Parameters
+    ----------
+    fem : ngsolve.Mesh
+    clamped : str or None
+        Name pattern of the faces that do not move; None if all do.
 
     Raises
     ------
@@ -206,9 +212,9 @@ def free_unknowns(fem: ngs.Mesh) -> tuple[IntArray, Blocks]:
     """
     space = product_space(fem)
     displacement, pressure, potential = space.components
-    moving = _dofs(displacement, fem.Materials(SOLID)) & ~_dofs(
-        displacement, fem.Boundaries(CLAMPED)
-    )
+    moving = _dofs(displacement, fem.Materials(SOLID))
+    if clamped is not None:
+        moving &= ~_dofs(displacement, fem.Boundaries(clamped))
     squeezed = _dofs(pressure, fem.Materials(FILM))
     wet = _dofs(potential, fem.Materials(FLUID))
     for name, mask in ((SOLID, moving), (FLUID, wet)):
@@ -232,6 +238,7 @@ def build_operators(
     water: Water,
     radius: float,
     motion: ngs.GridFunction | None = None,
+    clamped: str | None = CLAMPED,
     wetted: str = INTERFACE,
     outer: str = "outer",
     condition: RadiationCondition | None = None,
@@ -241,7 +248,7 @@ def build_operators(
     Parameters
     ----------
     fem : ngsolve.Mesh
-        Materials "blade", "film" (may be absent) and "water"; "root" is clamped.
+        Materials "blade", "film" (may be absent) and "water".
     stiffness, mass : csr_matrix
         K (tangent) and M of the structure in the full numbering of V * P, or of V if there is no
         film pressure; mass is that of C0.
@@ -255,6 +262,9 @@ def build_operators(
     motion : ngsolve.GridFunction or None
         Displacement of the whole mesh, ``VectorH1(order=2)``, from C0 to C1 [m]: water and
         coupling are then integrated on C1.  It vanishes on the sphere.
+    clamped : str or None
+        Name pattern of the faces that do not move; None where springs in the stiffness hold the
+        structure.
     wetted, outer : str
         Name patterns of the moving wetted surface and of the sphere.
     condition : RadiationCondition or None
@@ -269,7 +279,7 @@ def build_operators(
     center = check_sphere(fem, radius, outer)
     if motion is not None:
         _check_still(fem, motion, outer, radius)
-    free, blocks = free_unknowns(fem)
+    free, blocks = free_unknowns(fem, clamped)
     space = product_space(fem)
     loads = condition.loads(fem, water, outer, radius)
     blocks = replace(

@@ -57,11 +57,13 @@ def find_peaks(sweep: ReducedSweep, band: tuple[float, float]) -> Peaks:
     for resonance, loss in zip(*model.light_modes(band), strict=True):
         reach = _REACH * max(loss, _NARROWEST) * resonance
         low, high = max(band[0], resonance - reach), min(band[1], resonance + reach)
+        # as an offset from the resonance, so that a needle is not lost in the digits of f
         best = minimize_scalar(
-            lambda f: -power(f), bounds=(low, high), method="bounded",
+            lambda offset, near=resonance: -power(near + offset),
+            bounds=(low - resonance, high - resonance), method="bounded",
             options={"xatol": _FINE * resonance},
         )  # fmt: skip
-        top, margin = float(best.x), 1e-3 * (high - low)
+        top, margin = resonance + float(best.x), 1e-3 * (high - low)
         inside = low + margin < top < high - margin
         if inside and all(abs(top - other) > 1e-9 * top for other in found):
             found.append(top)

@@ -104,7 +104,10 @@ def draw_convergence(result: Result) -> Figure:
     passes = np.arange(1, result.static.iterations + 1)
     figure = new_figure(2.6)
     left, right = figure.subplots(1, 2)
-    left.semilogy(passes, history.relative_change, "o-", color=BLUE, markersize=3.5)
+    left.semilogy(passes, history.relative_change, "o-", color=BLUE, markersize=3.5, label="change")
+    left.semilogy(
+        passes, history.error, "s--", color=VERMILION, markersize=3.0, label="estimated error"
+    )
     left.axhline(
         tolerance, color=GREY, linestyle="--", linewidth=1.0, label=f"tolerance {tolerance:.0e}"
     )
@@ -112,8 +115,8 @@ def draw_convergence(result: Result) -> Figure:
     verdict = "converged" if result.static.converged else "NOT converged"
     left.set(
         xlabel="Pass of the coupling [–]",
-        ylabel=r"$\|u_k - u_{k-1}\| \,/\, \|u_{k-1}\|$ [–]",
-        title=f"Coupling, {verdict}",
+        ylabel=r"relative to $\|u\|$ [–]",
+        title=f"Coupling by {result.static.coupling_method}, {verdict}",
     )
     right.plot(passes, 1e3 * history.tip_displacement[:, 1], "o-", color=BLUE, markersize=3.5)
     right.set(
