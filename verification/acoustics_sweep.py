@@ -31,6 +31,8 @@ FREQUENCIES = np.linspace(*BAND, 21)
 HELD_OUT = np.array([102.5, 141.0, 163.2, 198.0])
 ACCURACY = 1e-3
 """Wanted accuracy of the reduced sweep [dB]."""
+ROUNDING = 1e-7
+"""What residuals of 1e-9 leave of a level [dB]: the judge is not better than that."""
 
 SAME = "agreement of computations with spheres of 0.9, 1.1 and 1.4 m"
 BLADE = "composite blade of the paper at rest, exact condition: "
@@ -42,7 +44,7 @@ def blade() -> WetBlade:
     return resting_blade(
         {
             "mesh.size": SIZE,
-            "mesh.water_size": "250 mm",
+            "mesh.water_size": "200 mm",
             "acoustics.band": [f"{f:g} Hz" for f in BAND],
             "acoustics.sphere_radius": f"{RADII[0]:g} m",
         }
@@ -158,14 +160,16 @@ def _difference() -> float:
 
 @check(
     "acoustics/sweep-estimate-bounds-error",
-    quantity=BLADE + "largest error of the reduced sweep's level over its estimate",
+    quantity=BLADE
+    + "largest error of the reduced sweep's level, beyond rounding, over its estimate",
     reference=0.0,
     source="direct solves of the same matrices at held-out frequencies, the highest peak included",
     tolerance=1.0,  # a bound
     quick=False,
 )
 def _bound() -> float:
-    return float(np.max(sweep().errors / sweep().reduced.estimate(sweep().held_out)))
+    beyond = np.maximum(sweep().errors - ROUNDING, 0.0)
+    return float(np.max(beyond / sweep().reduced.estimate(sweep().held_out)))
 
 
 @check(
@@ -252,12 +256,12 @@ def _register(
         )(lambda exact=exact: spread(figure, exact))
 
 
-_register("peak-level", "spread of a peak's level [dB]", lambda s: level(s.peaks.power), 0.1, 30.0)
+_register("peak-level", "spread of a peak's level [dB]", lambda s: level(s.peaks.power), 0.1, 10.0)
 _register(
     "peak-frequency",
     "relative spread of a peak's frequency",
     lambda s: np.log(s.peaks.frequency),
     1e-3,
-    2e-2,
+    1e-3,
 )
-_register("band-mean", "spread of the mean over the band [dB]", lambda s: s.mean_level, 0.1, 30.0)
+_register("band-mean", "spread of the mean over the band [dB]", lambda s: s.mean_level, 0.1, 10.0)

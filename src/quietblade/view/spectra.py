@@ -104,8 +104,9 @@ def _draw_spectra(curves: Sequence[_Curve], title: str, pictures: Mapping[str, A
     frequency = curves[0].configuration.spectrum.frequency
     for curve, level in zip(curves, levels, strict=True):
         f = curve.configuration.spectrum.frequency
-        # dots: computed frequencies; straight lines between them are not computed
-        axes.plot(f, level, label=curve.label, marker=".", markersize=3.0, **curve.stroke.options())
+        # of a direct sweep the frequencies that were computed; the lines between them are not
+        dot = "" if _is_reduced(curve.configuration) else "."
+        axes.plot(f, level, label=curve.label, marker=dot, markersize=3.0, **curve.stroke.options())
     axes.set_xlim(frequency[0], frequency[-1])
     _keep_readable(axes, levels)
     tops = _name_peaks(axes, curves)
@@ -114,7 +115,7 @@ def _draw_spectra(curves: Sequence[_Curve], title: str, pictures: Mapping[str, A
         loc="outside lower center",
         ncols=len(curves),
         title="; ".join(dict.fromkeys(_radiation_note(c.configuration) for c in curves))
-        + "\ndots: computed frequencies; the lines between them only guide the eye",
+        + f"\n{_sweep_note([c.configuration for c in curves])}",
         title_fontsize=7.5,
     )
     if shown:
@@ -129,6 +130,17 @@ def _radiation_note(configuration: ConfigurationResult) -> str:
         f"{configuration.radiation_condition} on a sphere of R = {configuration.outer_radius:.3g} m"
         f", kR = {kr[0]:.2f} to {kr[-1]:.2f}"
     )
+
+
+def _is_reduced(configuration: ConfigurationResult) -> bool:
+    return configuration.sweep.method == "reduced"
+
+
+def _sweep_note(configurations: Sequence[ConfigurationResult]) -> str:
+    if all(map(_is_reduced, configurations)):
+        worst = max(configuration.sweep.largest_estimate for configuration in configurations)
+        return f"reduced model; estimated error of the levels at most {worst:.1e} dB"
+    return "dots: computed frequencies; the lines between them only guide the eye"
 
 
 def _name_peaks(axes: Axes, curves: Sequence[_Curve]) -> dict[str, tuple[float, float]]:
