@@ -15,6 +15,7 @@ from quietblade.vibroacoustics.modes import wet_modes
 from quietblade.vibroacoustics.operators import Operators
 from quietblade.vibroacoustics.peaks import find_peaks
 from quietblade.vibroacoustics.power import level, power_budget
+from quietblade.vibroacoustics.projection import Projection
 from quietblade.vibroacoustics.reduced import ReducedSweep, reduce_system
 from tests.vibroacoustics.small_systems import random_operators
 
@@ -82,6 +83,30 @@ def test_reduced_sweep_agrees_with_dense_solutions(seed: int) -> None:
     assert sweep.certificate.size == sweep.model.size < operators.size
     assert sweep.model.residual(2.0 * np.pi * 6.0) < 1e-3
     assert sweep.model.budget(2.0 * np.pi * GRID).residual.max() < 1e-8
+
+
+def test_projected_terms_are_those_of_the_columns() -> None:
+    operators = random_operators(3)
+    rng = np.random.default_rng(0)
+    space = Projection(operators)
+    parts = rng.standard_normal((5, 2, operators.size))
+    vectors = parts[:, 0] + 1j * parts[:, 1]
+    vectors[3] = vectors[1] * (2.0 - 1j)  # nothing new
+    vectors[4, operators.blocks.u] = 0.0  # new in water and pressure only
+    space.extend(vectors[:2])
+    space.extend(vectors[2:])
+    columns = space.lift(np.eye(space.size))
+    for name, term in space.terms.items():
+        dense = columns @ operators.terms[name].toarray() @ columns.T
+        np.testing.assert_allclose(term, dense, atol=1e-12 * np.abs(dense).max())
+    solid, water, _ = space.places
+    assert (len(solid), len(water)) == (6, 8)  # the last one has no mass
+    mass = columns[solid] @ operators.terms["M"].toarray() @ columns[solid].T
+    np.testing.assert_allclose(mass, np.eye(6), atol=1e-12)
+    omega = np.array([20.0, 50.0 + 1.0j])
+    for matrix, w in zip(space.at_each(omega, 5), omega, strict=True):
+        dense = columns[:5] @ operators.at(w).toarray() @ columns[:5].T
+        np.testing.assert_allclose(matrix, dense, atol=1e-10 * np.abs(dense).max())
 
 
 def test_reduced_model_is_passive() -> None:
