@@ -135,9 +135,9 @@ def _rows(name: str, load: str, size: float, reference: Tip, *, tolerance: float
         )(lambda part=part: float(getattr(_path(load)[size], part)))
 
 
-# Slenderness 100 and 40 cells: stretch, shear and cells change the elastica by up to 4e-4 under
+# Slenderness 100 and 40 cells: stretch, shear and cells change the elastica by up to 5.1e-4 under
 # dead loads and 1.1e-3 under the follower loads that bend furthest.
-_DEAD, _FOLLOWER = 5e-4, 1.5e-3
+_DEAD, _FOLLOWER = 6e-4, 1.5e-3
 for _k in _SIZES["dead force"]:
     _rows(f"elastica-k{_k:g}", "dead force", _k, elastica(_k), tolerance=_DEAD)
 for _k in _SIZES["dead line"]:

@@ -186,3 +186,20 @@ def test_complex_modes_start_from_the_reduced_space() -> None:
     )
     assert from_space.converged.all()
     np.testing.assert_allclose(from_space.omega, plain.omega, rtol=1e-8)
+
+
+def test_one_factor_serves_the_modes_of_a_wide_band() -> None:
+    operators = random_operators(3, loss=0.02)
+    band = (2.0, 25.0)  # far more than an octave on either side of the factor
+    solver = make_solver(precision="double", tolerance=1e-12)
+    modes = wet_modes(operators, band[1], solver=solver)
+    sweep = reduce_system(
+        operators, a_load(operators), np.linspace(*band, 30), tolerance=1.0, solver=solver
+    )
+    found = complex_modes(
+        operators, modes, band, solver=solver, space=sweep.model.space, factor=sweep.factor
+    )
+    plain = complex_modes(operators, modes, band, solver=solver)
+    both = found.converged & plain.converged
+    assert np.mean(both) > 0.9
+    np.testing.assert_allclose(found.omega[both], plain.omega[both], rtol=1e-7)

@@ -3,6 +3,7 @@
 
 from math import inf
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -25,8 +26,10 @@ from quietblade.propulsion.loads import (
     PressureTable,
     UniformPressure,
 )
-from quietblade.propulsion.supports import RootSpring
 from quietblade.typing import FloatArray
+
+if TYPE_CHECKING:
+    from quietblade.propulsion.supports import RootSpring
 
 COLUMNS = ("span", "chord", "upper", "lower")
 """Columns of a file of pressures."""
@@ -35,8 +38,10 @@ _CORNERS = 33  # of a line on the curved face
 _OFF = 0.02  # of the chord: how far the mesh's faces may be from the blade's
 
 
-def support(case: Case) -> RootSpring | None:
+def support(case: Case) -> "RootSpring | None":
     """Springs under the root, None if it is clamped."""
+    from quietblade.propulsion.supports import RootSpring  # noqa: PLC0415  # finite elements
+
     if case.root.support == "clamped":
         return None
     held = (inf, inf, inf)
@@ -66,7 +71,7 @@ def _load(case: Case, blade: Blade, number: int) -> Load:
             except (LoadError, OSError, ValueError) as error:
                 finding = Finding(
                     ("loads", number, "table"),
-                    str(error),
+                    str(error).rstrip("."),
                     f"Write the columns {', '.join(COLUMNS)} under a header, separated by commas",
                 )
                 raise case.invalid(finding) from error

@@ -12,6 +12,7 @@ from quietblade.case.materials import MooneyRivlinWords, NeoHookeanWords
 from quietblade.errors import Notice
 from quietblade.geometry import Blade
 from quietblade.study import solids, translate
+from quietblade.study.loads import steady_loads
 from quietblade.typing import FloatArray
 
 _MOST_FACES = 400_000
@@ -69,10 +70,11 @@ def preflight(case: Case) -> Preflight:
     Raises
     ------
     InvalidCaseError
-        The blade or its film is impossible, the sphere does not enclose the blade with the stated
-        gap, or the mesh size is absurd; each with file, line, key, value and remedy.
+        The blade, its film or a load is impossible, the sphere does not enclose the blade with
+        the stated gap, or the mesh size is absurd; each with file, line, key, value and remedy.
     """
     blade = translate.build_blade(case)
+    steady_loads(case, blade)
     centre, radius = translate.sphere(case)
     clearance, outermost = _clearance(blade, centre, radius)
     faces = _surface_elements(blade, case.mesh.size)

@@ -101,8 +101,8 @@ def complex_modes(
     space : Projection, optional
         Space to start from besides the real modes, such as that of a reduced model of the band.
     factor : Factorization, optional
-        Of A at a frequency of the band: it then serves all modes together, and only those that it
-        does not bring to the tolerance are factored for again.
+        Of A at a frequency of the band: it serves all modes first, and only for those that it does
+        not bring to the tolerance others are made.
     tolerance : float
         Largest `ComplexModes.residual` of a converged mode; Omega is then good to its square.
     iterations : int
@@ -117,8 +117,7 @@ def complex_modes(
     space = Projection(operators) if space is None else space.copy()
     space.extend(starts[modes.frequency > 0.0])
     found: list[_Mode] = []
-    groups = _groups(modes.frequency[rows]) if factor is None else [slice(0, len(rows))]
-    for group in groups if len(rows) else []:
+    for group in _groups(modes.frequency[rows]):
         members = rows[group]
         low, high = modes.frequency[members[0]], modes.frequency[members[-1]]
         progress("complex modes", len(found) / len(rows), f"{low:.4g} to {high:.4g} Hz")
@@ -171,14 +170,16 @@ class _Search:
     def run(
         self, solver: SparseSolver, factor: Factorization | None, iterations: int
     ) -> list[_Mode]:
-        """Iterate with one factorisation, then with one more for each mode that needs it."""
+        """Iterate with the factor there is, with one of the group, with one for each mode left."""
         failure = ""
         try:
             self._renew()
-            if factor is None:
-                factor = self._factored(solver, complex(np.mean(self._omega.real)))
-            self._iterate(factor, iterations)
-            del factor
+            if factor is not None:
+                self._iterate(factor, iterations)
+            if np.any(self._change > self._tolerance):
+                own = self._factored(solver, complex(np.mean(self._omega.real)))
+                self._iterate(own, iterations)
+                del own
             for index in np.flatnonzero(self._change > self._tolerance):
                 if self._change[index] > self._tolerance:
                     self._iterate(self._factored(solver, complex(self._omega[index])), iterations)
@@ -223,7 +224,10 @@ class _Search:
         """
         centre = float(np.sqrt(self._start[0] * self._start[-1]))
         values, coordinates = self._space.eigenpairs(centre)
+        # the group spans little of this range; a space too poor for it has its eigenvalues anywhere
         near = (values.real > 0.5 * centre) & (values.real < 2.0 * centre)
+        if np.count_nonzero(near) < len(self._start):
+            near = values.real > 0.0
         values, coordinates = values[near], coordinates[near]
         solid = self._space.structural
         starts = np.array([self._space.coordinates(vector)[solid] for vector in self._vectors])
