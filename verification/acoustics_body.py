@@ -21,7 +21,7 @@ from quietblade.vibroacoustics.dtn import fitted_dtn
 from quietblade.vibroacoustics.excitation import pressure_force
 from quietblade.vibroacoustics.farfield import degree_error, sphere_waves
 from quietblade.vibroacoustics.modes import wet_modes
-from quietblade.vibroacoustics.multipoles import SurfaceSources
+from quietblade.vibroacoustics.multipoles import Multipoles, SurfaceSources
 from quietblade.vibroacoustics.operators import Operators, build_operators
 from quietblade.vibroacoustics.power import level, power_budget, radiated_power
 from quietblade.vibroacoustics.radiation import Bgt1
@@ -181,6 +181,16 @@ def degree_estimate() -> float:
     return max(float(degree_error(b.operators, b.omega, b.response).max()) for b in bodies)
 
 
+def _worst_difference(waves: Callable[[Plate], Multipoles]) -> float:
+    """Largest relative difference of the waves' power from the wetted surface's, all spheres."""
+    worst = 0.0
+    for radius in RADII:
+        body = plate(radius)
+        surface = power_budget(body.operators, body.omega, body.response, body.load).surface
+        worst = max(worst, float(np.abs(waves(body).power / surface - 1.0).max()))
+    return worst
+
+
 @check(
     "acoustics/dtn-surface-far-field",
     quantity="largest relative difference between the power from the wetted surface and that of "
@@ -192,14 +202,11 @@ def degree_estimate() -> float:
 )
 def far_field() -> float:
     """Two paths that share the solution only."""
-    worst = 0.0
-    for radius in RADII:
-        body = plate(radius)
-        sources = SurfaceSources.of(body.fem, NodalBasis(body.fem), body.operators)
-        waves = sources.multipoles(body.omega, body.response)
-        surface = power_budget(body.operators, body.omega, body.response, body.load).surface
-        worst = max(worst, float(np.abs(waves.power / surface - 1.0).max()))
-    return worst
+    return _worst_difference(
+        lambda b: SurfaceSources.of(b.fem, NodalBasis(b.fem), b.operators).multipoles(
+            b.omega, b.response
+        )
+    )
 
 
 @check(
@@ -212,13 +219,7 @@ def far_field() -> float:
 )
 def surface_waves() -> float:
     """Equal but for rounding, whatever the mesh."""
-    worst = 0.0
-    for radius in RADII:
-        body = plate(radius)
-        waves = sphere_waves(body.operators, body.omega, body.response)
-        surface = power_budget(body.operators, body.omega, body.response, body.load).surface
-        worst = max(worst, float(np.abs(waves.power / surface - 1.0).max()))
-    return worst
+    return _worst_difference(lambda b: sphere_waves(b.operators, b.omega, b.response))
 
 
 @check(

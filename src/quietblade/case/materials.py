@@ -100,8 +100,12 @@ class OrthotropicWords(Words):
     @property
     def strengths(self) -> tuple[float, float, float, float, float] | None:
         """Xt, Xc, Yt, Yc, S12 [Pa] if they are given."""
-        given = (self.Xt, self.Xc, self.Yt, self.Yc, self.S12)
-        return None if None in given else given  # type: ignore[return-value]
+        if (
+            self.Xt is None or self.Xc is None or self.Yt is None or self.Yc is None
+            or self.S12 is None
+        ):  # fmt: skip
+            return None
+        return self.Xt, self.Xc, self.Yt, self.Yc, self.S12
 
     def ratio(self, i: int, j: int) -> float:
         """Poisson's ratio nu_ij for i < j, from whichever of nu_ij and nu_ji is given."""

@@ -34,7 +34,7 @@ from quietblade.study.statics import Statics
 from quietblade.study.translate import environment
 from quietblade.study.translate import inflow as inflow_of
 from quietblade.study.vibration import Vibration
-from quietblade.study.viscous import section_layer, shedding, viscous
+from quietblade.study.viscous import ViscousFlow
 from quietblade.typing import FloatArray
 from quietblade.vibroacoustics.bands import Bands, band_mean
 from quietblade.vibroacoustics.matching import match
@@ -47,13 +47,13 @@ PACKAGES = ("ngsolve", "gmsh", "rslab", "numpy", "scipy", "xarray", "h5netcdf")
 def static_result(case: Case, statics: Statics) -> model.StaticResult:
     """Tables and figures of step 1."""
     state = statics.state
-    flows = (state.rigid, state.chained, state.coupled)
+    flows = tuple(viscous.flow for viscous in statics.viscous)
     total = [flow.total for flow in flows]
     result = model.StaticResult(
         history=_history(state),
         newton=_newton(state),
-        sections=_section_curves(case, flows),
-        performance=_performance(case, flows),
+        sections=_section_curves(case, statics.viscous),
+        performance=_performance(case, statics.viscous),
         stress=_stress(statics.stress),
         failure=_failure(statics.stress),
         reaction=_reaction(statics),
@@ -172,11 +172,9 @@ def _newton(state: StaticState) -> model.NewtonTable:
     )
 
 
-def _section_curves(case: Case, flows: tuple[BladeFlow, ...]) -> model.SectionCurves:
-    sections = [flow.sections for flow in flows]
-    loads = [flow.loads for flow in flows]
-    layers = [section_layer(case, flow) for flow in flows]
-    drags = [viscous(case, flow, layer) for flow, layer in zip(flows, layers, strict=True)]
+def _section_curves(case: Case, states: tuple[ViscousFlow, ...]) -> model.SectionCurves:
+    sections = [viscous.flow.sections for viscous in states]
+    loads = [viscous.flow.loads for viscous in states]
     water = environment(case)
     radius = [np.linalg.norm(s.reference[:, 1:], axis=1) for s in sections]
     root, tip = sections[0].reference[0, 2], sections[0].reference[-1, 2]
@@ -191,24 +189,20 @@ def _section_curves(case: Case, flows: tuple[BladeFlow, ...]) -> model.SectionCu
         lift_per_length=np.array([load.lift_per_length for load in loads]),
         warp=np.array([s.warp for s in sections]),
         reynolds=np.array([load.reynolds for load in loads]),
-        drag_coefficient=np.array([drag.drag_coefficient for drag in drags]),
+        drag_coefficient=np.array([viscous.loads.drag_coefficient for viscous in states]),
         suction=np.array([suction(load) for load in loads]),
         cavitation_number=np.array(
             [cavitation_number(s, load, water) for s, load in zip(sections, loads, strict=True)]
         ),
-        shedding_frequency=np.array(
-            [shedding(flow, layer) for flow, layer in zip(flows, layers, strict=True)]
-        ),
+        shedding_frequency=np.array([viscous.shedding for viscous in states]),
     )
 
 
-def _performance(case: Case, flows: tuple[BladeFlow, ...]) -> model.PerformanceFigures:
+def _performance(case: Case, states: tuple[ViscousFlow, ...]) -> model.PerformanceFigures:
     """Figures of the rotor in each state."""
     inflow, water = inflow_of(case), environment(case)
-    figures = [
-        performance(flow, inflow, viscous(case, flow, section_layer(case, flow))) for flow in flows
-    ]
-    coupled = flows[-1].sections, flows[-1].loads
+    figures = [performance(viscous.flow, inflow, viscous.loads) for viscous in states]
+    coupled = states[-1].flow.sections, states[-1].flow.loads
     return model.PerformanceFigures(
         inflow=inflow.name,
         friction=case.flow.friction,
@@ -221,7 +215,9 @@ def _performance(case: Case, flows: tuple[BladeFlow, ...]) -> model.PerformanceF
         thrust_coefficient=np.array([f.thrust_coefficient for f in figures]),
         torque_coefficient=np.array([f.torque_coefficient for f in figures]),
         efficiency=np.array([f.efficiency for f in figures]),
-        inviscid_efficiency=np.array([performance(flow, inflow).efficiency for flow in flows]),
+        inviscid_efficiency=np.array(
+            [performance(viscous.flow, inflow).efficiency for viscous in states]
+        ),
         inception_depth=float(inception_depth(*coupled, water).max()),
         inception_speed=float(inception_ship_speed(*coupled, water, case.flow.speed).min()),
     )

@@ -89,7 +89,7 @@ def run_case(case: Case, folder: RunFolder, progress: Progress = silent) -> Resu
         *facts.notices,
         *mesh.notices,
         *statics.notices(case),
-        *_singing(case, statics, vibrations),
+        *_singing(statics, vibrations),
         *chain.from_iterable(_step2_notices(motions[n], vibrations[n], sounds[n]) for n in motions),
     )
     reports = {
@@ -156,13 +156,13 @@ def _motions(
     return motions
 
 
-def _singing(case: Case, statics: Statics, vibrations: dict[str, Vibration]) -> tuple[Notice, ...]:
+def _singing(statics: Statics, vibrations: dict[str, Vibration]) -> tuple[Notice, ...]:
     """Shedding of the trailing edge against the wet modes under load, or at rest without them."""
     if not vibrations:
         return ()
     vibration = vibrations.get("C1", next(iter(vibrations.values())))
-    flow = statics.state.coupled
-    return tuple(singing(case, flow, vibration.modes.frequency, vibration.naming.name))
+    names = vibration.naming.name
+    return tuple(singing(statics.viscous[-1], vibration.modes.frequency, names))
 
 
 def _step2_notices(

@@ -23,7 +23,7 @@ from quietblade.propulsion.tensors import principal_values
 from quietblade.propulsion.transfer import LoadTransfer
 from quietblade.study import solids, translate
 from quietblade.study.loads import steady_loads, support
-from quietblade.study.viscous import section_layer, viscous_notices
+from quietblade.study.viscous import ViscousFlow, viscous_flow, viscous_notices
 from quietblade.typing import Progress
 
 POOR_TRANSFER = 0.5
@@ -50,6 +50,8 @@ class Statics:
         Shear strain of the film in C1.
     stress : StressReport
         Stress, strain and failure indices by region, and the reaction of the root.
+    viscous : tuple of ViscousFlow
+        Friction on the rigid, the chained and the coupled blade.
     solver : SolverReport
         What the linear solvers did.
     """
@@ -59,6 +61,7 @@ class Statics:
     loads: AppliedLoads | None
     shear: FilmShear | None
     stress: StressReport
+    viscous: tuple[ViscousFlow, ...]
     solver: SolverReport
 
     @property
@@ -77,8 +80,7 @@ class Statics:
         flow = self.state.coupled.sections, self.state.coupled.loads
         yield from translate.inflow(case).notices(*flow)
         yield from limits.notices(*flow, translate.environment(case))
-        layer = section_layer(case, self.state.coupled)
-        yield from viscous_notices(case, self.state.coupled, layer)
+        yield from viscous_notices(case, self.viscous[-1])
         correction = self.state.surface.correction
         if correction > POOR_TRANSFER:
             yield Notice(
@@ -159,4 +161,7 @@ def solve_statics(case: Case, blade: Blade, mesh: Mesh, progress: Progress) -> S
     plies = solids.blade_plies(case, blade, mesh.basis)
     stress = compute_stress(structure, state.structure, axes=axes, plies=plies)
     structure.forget()  # its factor is not needed in step 2
-    return Statics(structure, state, loads, shear, stress, solver.report())
+    viscous = tuple(
+        viscous_flow(case, flow) for flow in (state.rigid, state.chained, state.coupled)
+    )
+    return Statics(structure, state, loads, shear, stress, viscous, solver.report())

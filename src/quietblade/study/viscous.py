@@ -2,6 +2,7 @@
 """Viscous drag of a case's sections, by a friction line or a boundary layer, and singing."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -24,39 +25,51 @@ LAYER = "boundary-layer"
 """Word of the case for drag from an integral boundary layer."""
 
 
-def section_layer(case: Case, flow: BladeFlow) -> SectionLayer | None:
-    """Boundary layers on the sections in their effective stream, if the case asks for them."""
-    if case.flow.friction != LAYER:
-        return None
+@dataclass(frozen=True, eq=False)
+class ViscousFlow:
+    """What friction adds to the flow about the blade in one state.
+
+    Attributes
+    ----------
+    flow : BladeFlow
+        The inviscid flow.
+    layer : SectionLayer or None
+        Boundary layers on the sections, if the case asks for them.
+    loads : ViscousLoads
+        Drag of the sections.
+    shedding : (M,) float array
+        Shedding frequency of the trailing edge along the span [Hz].
+    """
+
+    flow: BladeFlow
+    layer: SectionLayer | None
+    loads: ViscousLoads
+    shedding: FloatArray
+
+
+def viscous_flow(case: Case, flow: BladeFlow) -> ViscousFlow:
+    """Compute drag and vortex shedding of the sections in their effective stream."""
     sections, loads = flow.sections, flow.loads
-    gamma = PanelSections(sections.contours).solve(loads.alpha).gamma
-    return boundary_layer(sections.contours, gamma, loads.reynolds)
-
-
-def viscous(case: Case, flow: BladeFlow, layer: SectionLayer | None) -> ViscousLoads:
-    """Drag of the sections as the case asks for it."""
-    sections, loads = flow.sections, flow.loads
-    if layer is not None:
-        return viscous_loads(sections, loads, layer.drag_coefficient)
-    if case.flow.friction == "none":
-        return viscous_loads(sections, loads, 0.0)
-    return viscous_loads(sections, loads, section_drag(sections, loads, case.flow.friction))
-
-
-def shedding(flow: BladeFlow, layer: SectionLayer | None) -> FloatArray:
-    """Shedding frequency of the trailing edge along the span (M,) [Hz]."""
-    displacement = None
-    if layer is not None:
+    if case.flow.friction == LAYER:
+        gamma = PanelSections(sections.contours).solve(loads.alpha).gamma
+        layer = boundary_layer(sections.contours, gamma, loads.reynolds)
         ends = [
             side.layer.momentum_thickness[:, -1] * side.layer.shape[:, -1]
             for side in (layer.upper, layer.lower)
         ]
-        displacement = flow.sections.chord * np.sum(ends, axis=0)
-    return section_shedding(flow.sections, flow.loads, displacement=displacement)
+        thickness = sections.chord * np.sum(ends, axis=0)
+        drag = viscous_loads(sections, loads, layer.drag_coefficient)
+        shedding = section_shedding(sections, loads, displacement=thickness)
+        return ViscousFlow(flow, layer, drag, shedding)
+    line = case.flow.friction
+    coefficient = 0.0 if line == "none" else section_drag(sections, loads, line)
+    drag = viscous_loads(sections, loads, coefficient)
+    return ViscousFlow(flow, None, drag, section_shedding(sections, loads))
 
 
-def viscous_notices(case: Case, flow: BladeFlow, layer: SectionLayer | None) -> Iterator[Notice]:
+def viscous_notices(case: Case, viscous: ViscousFlow) -> Iterator[Notice]:
     """Say where the drag is doubtful: laminar sections, or turbulent separation."""
+    flow, layer = viscous.flow, viscous.layer
     if layer is not None:
         for name, side in (("upper", layer.upper), ("lower", layer.lower)):
             yield from _separation(flow, name, side)
@@ -80,9 +93,6 @@ def _separation(flow: BladeFlow, name: str, side: SideLayer) -> Iterator[Notice]
     )
 
 
-def singing(
-    case: Case, flow: BladeFlow, frequencies: FloatArray, names: Sequence[str]
-) -> list[Notice]:
+def singing(viscous: ViscousFlow, frequencies: FloatArray, names: Sequence[str]) -> list[Notice]:
     """Say which wet modes the trailing edge may excite."""
-    layer = section_layer(case, flow)
-    return singing_notices(flow.sections, shedding(flow, layer), frequencies, list(names))
+    return singing_notices(viscous.flow.sections, viscous.shedding, frequencies, list(names))
