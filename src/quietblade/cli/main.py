@@ -18,6 +18,7 @@ from quietblade.errors import QuietbladeError
 
 COMMANDS = (
     "new", "check", "run", "show", "plot", "report", "compare", "section", "export", "materials",
+    "doctor",
 )  # fmt: skip
 """Each is the function of the same name in the module of the same name."""
 
