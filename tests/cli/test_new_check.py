@@ -179,6 +179,15 @@ def test_wrong_commands(
     assert fragment in capsys.readouterr().err
 
 
+def test_the_shell_completes_commands_and_options() -> None:
+    for words, wanted in (("quietblade ru", "run"), ("quietblade run --fo", "--force")):
+        ask = {"COMP_WORDS": words, "COMP_CWORD": str(words.count(" "))}
+        environment = os.environ | ask | {"_QUIETBLADE_COMPLETE": "complete_bash"}
+        line = [sys.executable, "-m", "quietblade.cli.main"]
+        asked = subprocess.run(line, env=environment, capture_output=True, text=True, check=True)
+        assert asked.stdout.split() == [wanted]
+
+
 def test_version(capsys: pytest.CaptureFixture[str]) -> None:
     assert execute(["--version"]) == ExitCode.DONE
     assert capsys.readouterr().out.startswith("quietblade 0.")

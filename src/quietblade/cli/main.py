@@ -51,7 +51,7 @@ class CommandGroup(TyperGroup):
 app = typer.Typer(
     name="quietblade",
     cls=CommandGroup,
-    add_completion=False,
+    add_completion=True,
     pretty_exceptions_enable=False,
 )
 
