@@ -4,6 +4,8 @@
 References
 ----------
 IEC 61260-1:2014, Electroacoustics - Octave-band and fractional-octave-band filters: base ten.
+ISO 18405:2017, Underwater acoustics - Terminology: a decidecade is a tenth of a decade, a third octave
+a third of a factor of two; they differ by 0.08 %.
 """
 
 from dataclasses import dataclass
@@ -13,7 +15,9 @@ import numpy as np
 
 from quietblade.typing import FloatArray
 
-_OCTAVE = 10.0**0.3
+BASE_TEN, BASE_TWO = 10.0**0.3, 2.0
+"""Frequency ratio of an octave: three tenths of a decade, or exactly two."""
+
 _REFERENCE = 1000.0
 
 
@@ -32,7 +36,9 @@ class Bands:
     upper: FloatArray
 
     @classmethod
-    def between(cls, low: float, high: float, fraction: int = 3) -> Self:
+    def between(
+        cls, low: float, high: float, fraction: int = 3, octave: float = BASE_TEN
+    ) -> Self:
         """Bands whose centres lie in a range, ends included.
 
         Parameters
@@ -40,7 +46,9 @@ class Bands:
         low, high : float
             [Hz]
         fraction : int
-            1 for octaves, 3 for third octaves, which are decidecades, 6, 12, ...
+            1 for octaves, 3 for third octaves, which are decidecades in base ten, 6, 12, ...
+        octave : float
+            `BASE_TEN` or `BASE_TWO`.
 
         Raises
         ------
@@ -54,10 +62,10 @@ class Bands:
             )
         # An even fraction has the reference frequency on an edge.
         shift = 0.0 if fraction % 2 else 0.5
-        ends = fraction * np.log(np.array([low, high]) / _REFERENCE) / np.log(_OCTAVE)
+        ends = fraction * np.log(np.array([low, high]) / _REFERENCE) / np.log(octave)
         first, last = np.ceil(ends[0] - shift - 1e-9), np.floor(ends[1] - shift + 1e-9)
-        centre = _REFERENCE * _OCTAVE ** ((np.arange(first, last + 1.0) + shift) / fraction)
-        half = _OCTAVE ** (0.5 / fraction)
+        centre = _REFERENCE * octave ** ((np.arange(first, last + 1.0) + shift) / fraction)
+        half = octave ** (0.5 / fraction)
         return cls(centre, centre / half, centre * half)
 
     @property

@@ -76,6 +76,10 @@ class Multipoles:
         """Share of each degree in the power, (f, degree + 1): monopole, dipole, quadrupole, ..."""
         return np.asarray(self.power_by_degree / self.power[:, None])
 
+    def only(self, chosen: AnyArray) -> Self:
+        """Same waves at some of the frequencies, by their places or a mask."""
+        return replace(self, omega=self.omega[chosen], amplitudes=self.amplitudes[chosen])
+
     def far_field(self, directions: FloatArray) -> ComplexArray:
         """Far pressure times distance, p r exp(i k r) for r to infinity [Pa m].
 

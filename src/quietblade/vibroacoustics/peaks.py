@@ -76,6 +76,23 @@ def find_peaks(sweep: ReducedSweep, band: tuple[float, float]) -> Peaks:
     )
 
 
+def peaks_on_grid(frequency: FloatArray, power: FloatArray) -> Peaks:
+    """Frequencies that are louder than both neighbours; their widths and errors are not known.
+
+    Parameters
+    ----------
+    frequency : (f,) array
+        Ascending [Hz].
+    power : (f,) array
+        Radiated power [W], nan where it is not known.
+    """
+    known = np.isfinite(power)
+    frequency, power = frequency[known], power[known]
+    top = np.flatnonzero((power[1:-1] > power[:-2]) & (power[1:-1] > power[2:])) + 1
+    unknown = np.full(len(top), np.nan)
+    return Peaks(frequency[top], power[top], unknown, unknown.copy())
+
+
 def _width(power: Callable[[float], float], top: float, band: tuple[float, float]) -> float:
     """Distance between the frequencies of half the power; nan if there are none."""
     half = 0.5 * power(top)

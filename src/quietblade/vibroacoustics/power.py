@@ -155,6 +155,7 @@ def radiation_efficiency(
     omega: FloatArray,
     response: ComplexArray,
     power: FloatArray,
+    columns: AnyArray | None = None,
 ) -> FloatArray:
     """Radiated power over that of a piston of the same motion (theory: S2-47).
 
@@ -167,11 +168,18 @@ def radiation_efficiency(
         int (u . n) (du . n) over the wetted surface, `fluid.normal_motion_matrix`.
     power : (...,) array
         Radiated power by any path [W].
+    columns : (k, n) array or None
+        If the response are coordinates (..., k): the vectors that they are factors of.
     """
     u = operators.blocks.u
     own = operators.free[u]
-    moved = response[..., u]
-    squared = _real_form(csr_matrix(normal_motion[own][:, own]), moved, moved)
+    form: Matrix = csr_matrix(normal_motion[own][:, own])
+    moved = response
+    if columns is None:
+        moved = response[..., u]
+    else:
+        form = columns[:, u] @ (form @ columns[:, u].T)
+    squared = _real_form(form, moved, moved)
     impedance = operators.density * operators.sound_speed
     return np.asarray(power / (0.5 * impedance * np.asarray(omega) ** 2 * squared))
 
