@@ -90,6 +90,11 @@ def table_model(annotation: Any) -> type[Words] | None:
     return None
 
 
+def entry_model(annotation: Any) -> type[Words] | None:
+    """Model of the entries of a list of tables, or None for any other key."""
+    return table_model(get_args(annotation)[0]) if get_origin(annotation) is tuple else None
+
+
 def tables(name: str, annotation: Any, meaning: str) -> Iterator[str]:
     """Sections of a table and of the tables inside it."""
     model = table_model(annotation)
@@ -122,6 +127,8 @@ def keys() -> Iterator[str]:
         elif name == "loads":
             for word, model in LOADS.items():
                 yield kind(f'`[[loads]]` with `kind = "{word}"`', model)
+        elif (model := entry_model(field.annotation)) is not None:
+            yield kind(f"`[[{name}]]`", model)
         else:
             yield from tables(name, field.annotation, field.description or "")
 

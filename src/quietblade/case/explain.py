@@ -136,6 +136,8 @@ def _model_at(path: Path, data: Mapping[str, Any], root: Model) -> Model | None:
         return choice.model(_at(path, data)) if len(path) == 2 else None
     model: Model | None = root
     for part in path:
+        if isinstance(part, int):  # of a list of tables
+            continue
         info = model.model_fields.get(str(part)) if model else None
         model = _table_model(info.annotation) if info else None
     return model

@@ -133,6 +133,7 @@ ModulusOrZero = Annotated[float, Quantity(units.MODULUS, least=0.0)]
 Density = Annotated[float, Quantity(units.DENSITY, above=0.0)]
 Viscosity = Annotated[float, Quantity(units.VISCOSITY, above=0.0)]
 LevelDifference = Annotated[float, Quantity(units.LEVEL, above=0.0)]
+Level = Annotated[float, Quantity(units.SOUND_LEVEL)]
 Fraction = Annotated[
     float,
     Quantity(

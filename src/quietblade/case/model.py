@@ -13,6 +13,7 @@ from typing import Any, Self
 from pydantic import Field, PrivateAttr, ValidationError
 
 from quietblade.case.explain import explain, material_findings
+from quietblade.case.far_field import BandsWords, FarFieldWords, LimitWords
 from quietblade.case.fields import Text, Words
 from quietblade.case.flow import FlowWords
 from quietblade.case.laminate import LaminateWords
@@ -56,6 +57,13 @@ class Case(Words):
     )
     acoustics: AcousticsWords = Field(title="Acoustics", description="Vibration and sound")
     excitation: ExcitationWords = Field(title="Excitation", description="Harmonic load")
+    far_field: FarFieldWords = Field(
+        FarFieldWords(), title="Far field", description="Directivity and pressure at points"
+    )
+    bands: BandsWords = Field(BandsWords(), title="Bands", description="Bands of the levels")
+    limits: tuple[LimitWords, ...] = Field(
+        (), title="Limits", description="Limits that the levels are held against"
+    )
     mesh: MeshWords = Field(title="Mesh", description="Size of the elements")
     solver: SolverWords = Field(SolverWords(), title="Solver", description="Linear solver")
 
@@ -150,6 +158,9 @@ class Case(Words):
         for number, load in enumerate(self.loads):
             if isinstance(load, PressureLoadWords) and load.table is not None:
                 named[f"loads[{number}].table"] = load.table
+        for number, limit in enumerate(self.limits):
+            if limit.table is not None:
+                named[f"limits[{number}].table"] = limit.table
         return {key: self.folder / name for key, name in named.items()}
 
     def plain(self) -> dict[str, Any]:

@@ -64,6 +64,7 @@ MOMENT_PER_ANGLE = Kind(
 )
 ACCELERATION = Kind("an acceleration", "m/s^2", "9.81 m/s^2", ("m/s^2",), 1e-9, 1e6)
 LEVEL = Kind("a difference of levels", "dB", "0.01 dB", ("dB",), 1e-9, 1e3)
+SOUND_LEVEL = Kind("a level", "dB", "120 dB", ("dB",), 0.0, 1e3)
 FRACTION = Kind("a fraction", "", "6 %", ("%",), 0.0, 1e3)
 
 _HUGE = 1e300  # an integer beyond has no float

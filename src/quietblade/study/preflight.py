@@ -12,6 +12,7 @@ from quietblade.case.materials import MooneyRivlinWords, NeoHookeanWords
 from quietblade.errors import Notice
 from quietblade.geometry import Blade
 from quietblade.study import solids, translate
+from quietblade.study.limits import far_field_findings, limit_notices, limits
 from quietblade.study.loads import steady_loads
 from quietblade.typing import FloatArray
 
@@ -70,17 +71,20 @@ def preflight(case: Case) -> Preflight:
     Raises
     ------
     InvalidCaseError
-        The blade, its film or a load is impossible, the sphere does not enclose the blade with
-        the stated gap, or the mesh size is absurd; each with file, line, key, value and remedy.
+        The blade, its film, a load, a limit or a point is impossible, the sphere does not enclose
+        the blade with the stated gap, or the mesh size is absurd; each with file, line, key, value
+        and remedy.
     """
     blade = translate.build_blade(case)
     steady_loads(case, blade)
+    held = limits(case)
     centre, radius = translate.sphere(case)
     clearance, outermost = _clearance(blade, centre, radius)
     faces = _surface_elements(blade, case.mesh.size)
     findings = [
         *_sphere_findings(case, clearance, outermost),
         *_mesh_findings(case, blade, faces),
+        *far_field_findings(case, blade, centre),
     ]
     if findings:
         raise case.invalid(*findings)
@@ -108,6 +112,7 @@ def preflight(case: Case) -> Preflight:
             *_radiation_notices(case, float(kr[0])),
             *_mesh_notices(case, per_bending, per_acoustic),
             *_material_notices(case),
+            *limit_notices(case, held),
         ),
     )
 

@@ -4,8 +4,8 @@
 References
 ----------
 IEC 61260-1:2014, Electroacoustics - Octave-band and fractional-octave-band filters: base ten.
-ISO 18405:2017, Underwater acoustics - Terminology: a decidecade is a tenth of a decade, a third octave
-a third of a factor of two; they differ by 0.08 %.
+ISO 18405:2017, Underwater acoustics - Terminology: a decidecade is a tenth of a decade, a third
+octave the third root of two; they differ by 0.08 %.
 """
 
 from dataclasses import dataclass
@@ -36,9 +36,7 @@ class Bands:
     upper: FloatArray
 
     @classmethod
-    def between(
-        cls, low: float, high: float, fraction: int = 3, octave: float = BASE_TEN
-    ) -> Self:
+    def between(cls, low: float, high: float, fraction: int = 3, octave: float = BASE_TEN) -> Self:
         """Bands whose centres lie in a range, ends included.
 
         Parameters

@@ -77,7 +77,7 @@ class Multipoles:
         return np.asarray(self.power_by_degree / self.power[:, None])
 
     def only(self, chosen: AnyArray) -> Self:
-        """Same waves at some of the frequencies, by their places or a mask."""
+        """Return the same waves at some of the frequencies, by their places or a mask."""
         return replace(self, omega=self.omega[chosen], amplitudes=self.amplitudes[chosen])
 
     def far_field(self, directions: FloatArray) -> ComplexArray:

@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Limits of a case, and what can be known of its far field before a run."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+
+from quietblade.case import Case, Finding
+from quietblade.errors import Notice
+from quietblade.geometry import Blade
+from quietblade.typing import FloatArray
+from quietblade.vibroacoustics.bands import BASE_TEN, BASE_TWO, Bands, Limit
+
+COLUMNS = ("frequency", "level")
+"""Columns of a file of a limit."""
+
+OCTAVES = {"decidecade": BASE_TEN, "third-octave": BASE_TWO}
+"""Frequency ratio of an octave by the kind of bands."""
+
+
+_FARTHEST = 1e6  # [m]
+
+
+def bands_of(kind: str, low: float, high: float) -> Bands:
+    """Bands of a kind whose centres lie in a range [Hz]."""
+    return Bands.between(low, high, octave=OCTAVES[kind])
+
+
+def limits(case: Case) -> tuple[Limit, ...]:
+    """Make the limits that the case gives, in its order.
+
+    Raises
+    ------
+    InvalidCaseError
+        A limit cannot be, or its file cannot be read.
+    """
+    return tuple(_limit(case, number) for number in range(len(case.limits)))
+
+
+def _limit(case: Case, number: int) -> Limit:
+    words = case.limits[number]
+    if words.table is None:
+        return Limit(words.name, np.array(words.frequencies), np.array(words.levels))
+    try:
+        frequency, level = read_limit(case.files[f"limits[{number}].table"])
+        return Limit(words.name, frequency, level)
+    except (OSError, ValueError) as error:
+        finding = Finding(
+            ("limits", number, "table"),
+            str(error).rstrip("."),
+            f"Write the columns {', '.join(COLUMNS)} (Hz, dB) under a header, separated by commas",
+        )
+        raise case.invalid(finding) from error
+
+
+def read_limit(file: Path) -> tuple[FloatArray, FloatArray]:
+    """Frequencies [Hz] and levels [dB] of a file of a limit.
+
+    Raises
+    ------
+    ValueError
+        The file is not such a table.
+    OSError
+        It cannot be read.
+    """
+    table = np.genfromtxt(file, delimiter=",", names=True, encoding="utf-8", ndmin=1)
+    names = table.dtype.names or ()
+    if tuple(names) != COLUMNS:
+        raise ValueError(f"the columns are {', '.join(names) or 'unnamed'}")
+    return table["frequency"], table["level"]
+
+
+def far_field_findings(case: Case, blade: Blade, centre: FloatArray) -> Iterator[Finding]:
+    """Say what of the far field cannot be: distances, places and frequencies.
+
+    Parameters
+    ----------
+    centre : (3,) array
+        Centre of the sphere [m].
+    """
+    words, radius, (low, high) = case.far_field, case.acoustics.sphere_radius, case.acoustics.band
+    if words.distance is not None and words.distance < radius:
+        yield Finding(
+            ("far_field", "distance"),
+            f"is inside the sphere of {radius:g} m",
+            "Choose a larger distance, or leave it out for the far field",
+        )
+    for number, frequency in enumerate(words.frequencies):
+        if not low <= frequency <= high:
+            yield Finding(
+                ("far_field", "frequencies", number),
+                f"lies outside the band of {low:g} to {high:g} Hz",
+                "Choose a frequency of the band, or widen acoustics.band",
+            )
+    if words.points:
+        surface = blade.section(np.linspace(0.0, 1.0, 201), 161).reshape(-1, 3)
+    for number, point in enumerate(words.points):
+        distance = float(np.linalg.norm(surface - np.array(point), axis=1).min())
+        if distance < case.mesh.size:
+            yield Finding(
+                ("far_field", "points", number),
+                f"is {1e3 * distance:.3g} mm from the blade's surface, less than a cell",
+                f"Keep mesh.size ({1e3 * case.mesh.size:.3g} mm) away from the blade",
+            )
+        elif np.linalg.norm(np.array(point) - centre) > _FARTHEST:
+            yield Finding(
+                ("far_field", "points", number),
+                "is absurdly far away",
+                "Check the unit: the pressure falls with 1/r, the source level is told anyway",
+            )
+
+
+def limit_notices(case: Case, held: tuple[Limit, ...]) -> Iterator[Notice]:
+    """Say which limits have nothing to say about the band."""
+    low, high = case.acoustics.band
+    for number, (words, limit) in enumerate(zip(case.limits, held, strict=True)):
+        at = np.linspace(low, high, 101)
+        if words.bands != "narrow":
+            bands = bands_of(words.bands, low, high)
+            at = bands.centre[(bands.lower >= low) & (bands.upper <= high)]
+        if not np.isfinite(limit.at(at)).any():
+            yield Notice(
+                f"limits[{number}]",
+                f"{words.name!r} holds for no frequency or whole band of the band of {low:g} to "
+                f"{high:g} Hz",
+                remedy="Extend its frequencies, or acoustics.band",
+            )
