@@ -244,6 +244,7 @@ def make_configuration(
     radiated = ((radiation / eta)[:, None] * modal_power).sum(axis=0)
     injected = modal_power.sum(axis=0)
     power = np.stack([radiated, radiated * (1 + 1e-9), radiated * 0.3])
+    peaks = _peaks(frequency, radiated)
     return m.ConfigurationResult(
         modes=m.ModeTable(
             name=names,
@@ -267,14 +268,93 @@ def make_configuration(
             mobility=modal_mobility.sum(axis=0),
         ),
         sweep=m.SweepRecord("reduced", 0.01, 2e-4, 16, 64, 1),
-        peaks=_peaks(frequency, radiated),
-        bands=m.BandTable(np.array([125.89, 158.49]), np.array([70.0, 72.0]), 71.0),
+        peaks=peaks,
+        bands=m.BandTable(
+            "decidecade",
+            np.array([125.89, 158.49]),
+            np.array([112.2, 141.25]),
+            np.array([141.25, 177.83]),
+            np.array([70.0, 72.0]),
+            np.array([115.5, 117.5]),
+            71.0,
+            116.5,
+        ),
+        far_field=_far_field(frequency, power[2]),
+        directivity=_directivity(peaks),
+        limits=_limits(frequency, radiated),
         radiation_condition="BGT-1",
         outer_radius=1.3,
         sound_speed=1500.0,
         water_density=DENSITY,
         excitation_pressure=1.0e4,
         excitation_area=1.0e-3,
+    )
+
+
+SHARES = np.array([0.02, 0.9, 0.08, 0.0])
+
+
+def _far_field(frequency: FloatArray, power: FloatArray) -> m.FarFieldResult:
+    level = 10.0 * np.log10(DENSITY * 1500.0 * power / (4.0 * np.pi * 1e-12))
+    return m.FarFieldResult(
+        origin="multipoles",
+        frequency=frequency,
+        kr=2.0 * np.pi * frequency / 1500.0 * 1.3,
+        source_level=level,
+        efficiency=1e-3 * (frequency / 100.0) ** 2,
+        share=np.tile(SHARES[:, None], (1, len(frequency))),
+        condition_error=np.full(len(frequency), 5.2),
+        place=np.array([[0.0, 10.0, 0.7]]),
+        pressure=np.sqrt(2.0) * 1e-6 * 10 ** ((level[None] - 20.0) / 20.0) * np.exp(-0.3j),
+    )
+
+
+def _directivity(peaks: m.PeakTable) -> m.DirectivityResult:
+    """Dipoles along y, and one frequency that was asked for."""
+    frequency = np.append(peaks.frequency, 140.0)
+    source = np.append(peaks.power_level + 45.0, 100.0)
+    polar, azimuth = np.linspace(0.0, np.pi, 19), 2.0 * np.pi * np.arange(36) / 36
+    angle = 2.0 * np.pi * np.arange(72) / 72
+    lobe = np.sin(polar)[:, None] * np.sin(azimuth)
+    in_planes = np.stack([np.sin(angle), 0.0 * angle, np.cos(angle)])
+    around = np.log10(3.0 * lobe**2 + 1e-9), np.log10(3.0 * in_planes**2 + 1e-9)
+    count = len(frequency)
+    return m.DirectivityResult(
+        frequency=frequency,
+        reason=("peak",) * len(peaks.frequency) + ("given",),
+        source_level=source,
+        efficiency=1e-3 * (frequency / 100.0) ** 2,
+        share=np.tile(SHARES, (count, 1)),
+        index=np.full(count, 10.0 * np.log10(3.0)),
+        loudest=np.tile([0.0, 1.0, 0.0], (count, 1)),
+        centre=np.array([0.0, 0.0, 0.7]),
+        distance=np.inf,
+        cut=("xy", "xz", "yz"),
+        angle=angle,
+        cut_level=source[:, None, None] + 10.0 * around[1],
+        polar=polar,
+        azimuth=azimuth,
+        level=source[:, None, None] + 10.0 * around[0],
+        product=np.sqrt(2.0) * 1e-6 * 10 ** (source[:, None, None] / 20.0) * (lobe + 0j),
+    )
+
+
+def _limits(frequency: FloatArray, power: FloatArray) -> m.LimitTable:
+    """One for each frequency, one for decidecades."""
+    level = 10.0 * np.log10(power / m.REFERENCE_POWER)
+    centre = np.array([125.89, 158.49])
+    narrow = np.where(frequency > 120.0, 75.0, np.nan)
+    excess = level - narrow
+    return m.LimitTable(
+        name=("hull", "range"),
+        quantity=("sound-power", "source-level"),
+        bands=("narrow", "decidecade"),
+        worst_excess=np.array([np.nanmax(excess), 2.5]),
+        worst_frequency=np.array([frequency[np.nanargmax(excess)], 158.49]),
+        row_of=np.repeat([0, 1], [len(frequency), 2]),
+        frequency=np.concatenate([frequency, centre]),
+        found=np.concatenate([level, [115.5, 117.5]]),
+        allowed=np.concatenate([narrow, [116.0, 115.0]]),
     )
 
 

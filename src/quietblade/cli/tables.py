@@ -12,10 +12,13 @@ from rich.text import Text
 from quietblade.cli.common import console
 
 if TYPE_CHECKING:  # importing results takes longer than help may
-    from quietblade.results.tables import Table
+    from quietblade.results.table import Table
 
 _SHORT = 12  # characters of a figure, which must not be broken
-_STYLES = {"agrees": "green", "DIFFERS": "bold red", "not judged": "dim"}
+_STYLES = {
+    "agrees": "green", "DIFFERS": "bold red", "not judged": "dim",
+    "kept": "green", "EXCEEDED": "bold red", "not touched": "dim",
+}  # fmt: skip
 
 
 def show_tables(title: str, tables: Iterable[Table]) -> None:

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from quietblade.results.summary import ModeSummary, Summary
-from quietblade.results.tables import Table, number
+from quietblade.results.table import Table, number
 
 
 @dataclass(frozen=True)

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from quietblade.results.claims import judge_claims
+from quietblade.results.far_headline import far_field_summary, limit_summaries
 from quietblade.results.model import ConfigurationResult, Result, path, state
 from quietblade.results.peaks import find_peaks
 from quietblade.results.summary import (
@@ -45,6 +46,8 @@ def summarise(result: Result) -> Summary:
             C0=_modes(configurations.get("C0")), C1=_modes(configurations.get("C1"))
         ),
         sound_power=_sound_power(result),
+        far_field=far_field_summary(result),
+        limits=tuple(limit_summaries(result)),
         balance=BalanceSummary(
             max_relative_residual=_largest(s.balance_residual for s in spectra),
             max_solver_residual=_largest(s.solver_residual for s in spectra),

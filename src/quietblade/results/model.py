@@ -282,12 +282,83 @@ class PeakTable(Record):
 
 @dataclass(frozen=True, eq=False)
 class BandTable(Record):
-    """Mean power by decidecade band and over all."""
+    """Mean power by band and over all."""
 
     group: ClassVar[str] = "C*/bands"
+    kind: str
     centre: FloatArray
+    lower: FloatArray
+    upper: FloatArray
     level: FloatArray
+    source_level: FloatArray
     mean_level: float
+    mean_source_level: float
+
+
+@dataclass(frozen=True, eq=False)
+class FarFieldResult(Record):
+    """What leaves over frequency, and the sound pressure at points."""
+
+    group: ClassVar[str] = "C*/far_field"
+    origin: str
+    frequency: FloatArray
+    kr: FloatArray
+    source_level: FloatArray
+    efficiency: FloatArray
+    share: FloatArray
+    condition_error: FloatArray
+    place: FloatArray
+    pressure: ComplexArray
+
+    @property
+    def pressure_level(self) -> FloatArray:
+        """Level of the sound pressure [dB re 1 uPa], minus infinity for silence."""
+        with np.errstate(divide="ignore"):
+            return np.asarray(20.0 * np.log10(np.abs(self.pressure) / np.sqrt(2.0) / 1e-6))
+
+
+@dataclass(frozen=True, eq=False)
+class DirectivityResult(Record):
+    """Sound by direction at the peaks and at the frequencies asked for."""
+
+    group: ClassVar[str] = "C*/directivity"
+    frequency: FloatArray
+    reason: tuple[str, ...]
+    source_level: FloatArray
+    efficiency: FloatArray
+    share: FloatArray
+    index: FloatArray
+    loudest: FloatArray
+    centre: FloatArray
+    distance: float
+    cut: tuple[str, ...]
+    angle: FloatArray
+    cut_level: FloatArray
+    polar: FloatArray
+    azimuth: FloatArray
+    level: FloatArray
+    product: ComplexArray
+
+
+@dataclass(frozen=True, eq=False)
+class LimitTable(Record):
+    """Levels against the limits of the case, each with its rows of frequencies."""
+
+    group: ClassVar[str] = "C*/limits"
+    name: tuple[str, ...]
+    quantity: tuple[str, ...]
+    bands: tuple[str, ...]
+    worst_excess: FloatArray
+    worst_frequency: FloatArray
+    row_of: IntArray
+    frequency: FloatArray
+    found: FloatArray
+    allowed: FloatArray
+
+    @property
+    def excess(self) -> FloatArray:
+        """By how much the levels are above the limit [dB]; nan where there is none."""
+        return np.asarray(self.found - self.allowed)
 
 
 @dataclass(frozen=True, eq=False)
@@ -300,6 +371,9 @@ class ConfigurationResult(Record):
     sweep: SweepRecord
     peaks: PeakTable
     bands: BandTable
+    far_field: FarFieldResult
+    directivity: DirectivityResult
+    limits: LimitTable
     radiation_condition: str
     outer_radius: float
     sound_speed: float

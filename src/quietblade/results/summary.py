@@ -151,6 +151,65 @@ class SoundPowerSummary(_Part):
     )
 
 
+class PatternSummary(_Part):
+    """Sound at one frequency: a peak, or a frequency that was asked for."""
+
+    mode: str = Field(description="wet mode that makes the peak, or empty")
+    frequency_hz: Number = _of("C*/directivity/frequency")
+    level_db: Number = Field(description="sound power level [dB re 1 pW]")
+    source_level_db: Number = _of("C*/directivity/source_level")
+    width_hz: Number = _of("C*/peaks/width", "of a peak")
+    estimate_db: Number = _of("C*/peaks/estimate", "of a peak")
+    efficiency: Number = _of("C*/directivity/efficiency")
+    monopole: Number = Field(description="share of the monopole in the power")
+    dipole: Number = Field(description="share of the dipole")
+    quadrupole: Number = Field(description="share of the quadrupole")
+    higher: Number = Field(description="share of all higher degrees")
+    index_db: Number = _of("C*/directivity/index")
+    loudest: Vector = _of("C*/directivity/loudest")
+
+
+class BandSummary(_Part):
+    """Levels of one band."""
+
+    centre_hz: Number = _of("C*/bands/centre")
+    level_db: Number = _of("C*/bands/level")
+    source_level_db: Number = _of("C*/bands/source_level")
+
+
+class ConfigurationSound(_Part):
+    """Sound of one configuration; empty if it was not computed."""
+
+    mean_level_db: Number = _of("C*/bands/mean_level")
+    mean_source_level_db: Number = _of("C*/bands/mean_source_level")
+    largest_condition_error_db: Number = _of("C*/far_field/condition_error", "the largest")
+    peaks: tuple[PatternSummary, ...] = Field(description="peaks of the radiated power")
+    given: tuple[PatternSummary, ...] = Field(description="frequencies that the case names")
+    bands: tuple[BandSummary, ...] = Field(description="bands that the frequencies cover")
+
+
+class FarFieldSummary(_Part):
+    """What leaves, by peaks and bands."""
+
+    origin: str = _of("C*/far_field/origin")
+    band_kind: str = _of("C*/bands/kind")
+    distance_m: Number = _of("C*/directivity/distance", "null if infinite")
+    C0: ConfigurationSound
+    C1: ConfigurationSound
+
+
+class LimitSummary(_Part):
+    """One limit in one configuration."""
+
+    name: str = _of("C*/limits/name")
+    quantity: str = _of("C*/limits/quantity")
+    bands: str = _of("C*/limits/bands")
+    configuration: str = Field(description="C0 or C1")
+    worst_excess_db: Number = _of("C*/limits/worst_excess")
+    worst_frequency_hz: Number = _of("C*/limits/worst_frequency")
+    exceeded: bool | None = Field(description="null if the limit does not touch the band")
+
+
 class BalanceSummary(_Part):
     """How well the energy balances, over both configurations."""
 
@@ -210,6 +269,8 @@ class Summary(_Part):
     strength: StrengthSummary
     modes: ModesSummary
     sound_power: SoundPowerSummary
+    far_field: FarFieldSummary
+    limits: tuple[LimitSummary, ...] = Field(description="limits of the case by configuration")
     balance: BalanceSummary
     mesh: MeshSummary
     unknowns: int = Field(description="free unknowns of step 2")

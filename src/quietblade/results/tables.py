@@ -2,29 +2,10 @@
 """The headline figures as small tables, for the screen, for ``summary.txt`` and for the report."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 
+from quietblade.results.far_tables import far_field_tables
 from quietblade.results.summary import ModeSummary, Summary
-
-
-@dataclass(frozen=True)
-class Table:
-    """A titled table of texts.
-
-    Attributes
-    ----------
-    title : str
-    columns : tuple of str
-        Heads; empty for a list of name and value.
-    rows : tuple of tuple of str
-    note : str
-        A line that belongs below the table.
-    """
-
-    title: str
-    columns: tuple[str, ...]
-    rows: tuple[tuple[str, ...], ...]
-    note: str = ""
+from quietblade.results.table import Table, number
 
 
 def summary_tables(summary: Summary) -> tuple[Table, ...]:
@@ -34,6 +15,7 @@ def summary_tables(summary: Summary) -> tuple[Table, ...]:
         _performance(summary),
         _strength(summary),
         _modes(summary),
+        *far_field_tables(summary),
         _claims(summary),
         _checks(summary),
         _run(summary),
@@ -52,11 +34,6 @@ def as_text(title: str, tables: Iterable[Table]) -> str:
         if table.note:
             parts.append(f"({table.note})")
     return "\n".join(parts) + "\n"
-
-
-def number(value: float | None, form: str = ".4g") -> str:
-    """Format a figure; a dash if it was not computed."""
-    return "-" if value is None else format(value, form)
 
 
 def verdict(agrees: bool | None) -> str:

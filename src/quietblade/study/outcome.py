@@ -29,6 +29,7 @@ from quietblade.propulsion.coupling import StaticState
 from quietblade.propulsion.loads_assembly import AppliedLoads
 from quietblade.propulsion.stress import StressReport
 from quietblade.results import model
+from quietblade.study import far_outcome
 from quietblade.study.sound import Sound
 from quietblade.study.statics import Statics
 from quietblade.study.translate import environment
@@ -36,7 +37,6 @@ from quietblade.study.translate import inflow as inflow_of
 from quietblade.study.vibration import Vibration
 from quietblade.study.viscous import ViscousFlow
 from quietblade.typing import FloatArray
-from quietblade.vibroacoustics.bands import Bands, band_mean
 from quietblade.vibroacoustics.matching import match
 from quietblade.vibroacoustics.power import level
 
@@ -250,7 +250,10 @@ def configuration_result(
         spectrum=_spectrum(case, vibration, sound),
         sweep=_sweep(case, sound),
         peaks=_peaks(sound),
-        bands=_bands(sound),
+        bands=far_outcome.band_table(case, sound),
+        far_field=far_outcome.far_field_result(operators.radius, sound.far),
+        directivity=far_outcome.directivity_result(case, sound.far),
+        limits=far_outcome.limit_table(case, sound),
         radiation_condition=operators.condition.name,
         outer_radius=operators.radius,
         sound_speed=operators.sound_speed,
@@ -321,32 +324,8 @@ def _sweep(case: Case, sound: Sound) -> model.SweepRecord:
 
 
 def _peaks(sound: Sound) -> model.PeakTable:
-    """Peaks of the reduced model, or the highest of three neighbours of a direct sweep."""
-    if sound.peaks is not None:
-        peaks = sound.peaks
-        return model.PeakTable(peaks.frequency, level(peaks.power), peaks.width, peaks.estimate)
-    solved = np.flatnonzero(np.isfinite(sound.budget.radiated))
-    power = sound.budget.radiated[solved]
-    inner = np.flatnonzero((power[1:-1] > power[:-2]) & (power[1:-1] > power[2:])) + 1
-    unknown = np.full(len(inner), np.nan)
-    return model.PeakTable(
-        sound.frequency[solved][inner], level(power[inner]), unknown, unknown.copy()
-    )
-
-
-def _bands(sound: Sound) -> model.BandTable:
-    """Mean power in the decidecades that the frequencies cover, and in all of them."""
-    frequency, power = sound.frequency, sound.budget.radiated
-    solved = np.isfinite(power)
-    frequency, power = frequency[solved], power[solved]
-    bands = Bands.between(frequency[0], frequency[-1])
-    mean = bands.mean(frequency, power)
-    whole = np.isfinite(mean)
-    return model.BandTable(
-        bands.centre[whole],
-        level(mean[whole]),
-        float(level(np.array(band_mean(frequency, power, (frequency[0], frequency[-1]))))),
-    )
+    peaks = sound.peaks
+    return model.PeakTable(peaks.frequency, level(peaks.power), peaks.width, peaks.estimate)
 
 
 def mesh_result(mesh: Mesh, vibration: Vibration) -> model.MeshResult:

@@ -9,10 +9,11 @@ import numpy as np
 from quietblade.case import Case
 from quietblade.errors import Notice
 from quietblade.linalg import SolverReport
+from quietblade.study.far_field import FarField, Samples, solve_far_field
 from quietblade.study.vibration import Vibration, symmetric_solver
 from quietblade.typing import ComplexArray, FloatArray, IntArray, Progress
 from quietblade.vibroacoustics.multipoles import Multipoles
-from quietblade.vibroacoustics.peaks import Peaks, find_peaks
+from quietblade.vibroacoustics.peaks import Peaks, find_peaks, peaks_on_grid
 from quietblade.vibroacoustics.power import PowerBudget, power_budget
 from quietblade.vibroacoustics.radiation_check import radiation_notices
 from quietblade.vibroacoustics.reduced import Certificate
@@ -46,9 +47,11 @@ class Sound:
         What the solvers did in the sweep.
     failures : mapping of float to str
         Frequencies that could not be solved [Hz], and why.
+    peaks : Peaks
+        Maxima of the reduced model, or the loudest of three neighbours of a direct sweep.
+    far : FarField
+        What leaves, and where to.
     certificate : Certificate or None
-        Of a reduced sweep.
-    peaks : Peaks or None
         Of a reduced sweep.
     notices : tuple of Notice
     """
@@ -63,9 +66,10 @@ class Sound:
     snapshots: FloatArray
     solutions: ComplexArray
     report: SolverReport
+    peaks: Peaks
+    far: FarField
     failures: Mapping[float, str] = field(default_factory=dict)
     certificate: Certificate | None = None
-    peaks: Peaks | None = None
     notices: tuple[Notice, ...] = ()
 
 
@@ -88,6 +92,19 @@ def _direct(case: Case, vibration: Vibration, frequency: FloatArray, progress: P
     assert response.solution is not None  # nothing observed: the solutions are kept
     nearest = _nearest(frequency, vibration.damped.frequency)
     waves = vibration.sources.multipoles(response.omega, response.solution)
+    budget = power_budget(operators, response.omega, response.solution, vibration.load)
+    solved = waves.only(np.isfinite(budget.radiated))
+    peaks = peaks_on_grid(frequency, budget.radiated)
+    asked = _patterns(case, peaks)
+    there = np.searchsorted(frequency, asked)
+    sources = vibration.sources
+    far = solve_far_field(
+        case,
+        vibration,
+        Samples(response.omega, response.solution, sources),
+        Samples(response.omega[there], response.solution[there], sources),
+        len(peaks.frequency),
+    )
     failed = [
         Notice(f"sweep {vibration.name}", f"no solution at {f:.6g} Hz: {why}")
         for f, why in response.failures.items()
@@ -95,7 +112,7 @@ def _direct(case: Case, vibration: Vibration, frequency: FloatArray, progress: P
     return Sound(
         name=vibration.name,
         frequency=frequency,
-        budget=power_budget(operators, response.omega, response.solution, vibration.load),
+        budget=budget,
         work=np.asarray(response.solution @ vibration.load),
         multipoles=waves,
         residual=response.residual,
@@ -103,10 +120,13 @@ def _direct(case: Case, vibration: Vibration, frequency: FloatArray, progress: P
         snapshots=frequency[nearest],
         solutions=response.solution[nearest],
         report=response.report,
+        peaks=peaks,
+        far=far,
         failures=response.failures,
         notices=(
-            *waves.notices(),
-            *radiation_notices(operators.condition, operators.radius, waves),
+            *solved.notices(),
+            *radiation_notices(operators.condition, operators.radius, solved),
+            *far.notices,
             *_coarse_step(vibration, frequency),
             *failed,
         ),
@@ -119,9 +139,21 @@ def _reduced(case: Case, vibration: Vibration, frequency: FloatArray, progress: 
     assert sweep is not None
     operators, model, omega = vibration.operators, sweep.model, 2.0 * np.pi * frequency
     progress("sweep", 0.1, f"{len(frequency)} frequencies on {model.size} columns")
-    waves = vibration.sources.on(model.columns()).multipoles(omega, model.coordinates(omega))
+    columns, y = model.columns(), model.coordinates(omega)
+    sources = vibration.sources.on(columns)
+    waves = sources.multipoles(omega, y)
     progress("sweep", 0.6, "peaks")
     peaks = find_peaks(sweep, case.acoustics.band)
+    progress("sweep", 0.8, "far field")
+    asked = 2.0 * np.pi * _patterns(case, peaks)
+    at_asked = model.coordinates(asked) if len(asked) else y[:0]
+    far = solve_far_field(
+        case,
+        vibration,
+        Samples(omega, y, sources, columns),
+        Samples(asked, at_asked, sources, columns),
+        len(peaks.frequency),
+    )
     nearest = _nearest(frequency, vibration.damped.frequency)
     return Sound(
         name=vibration.name,
@@ -134,13 +166,20 @@ def _reduced(case: Case, vibration: Vibration, frequency: FloatArray, progress: 
         snapshots=frequency[nearest],
         solutions=model.solution(omega[nearest]),
         report=sweep.report,
-        certificate=sweep.certificate,
         peaks=peaks,
+        far=far,
+        certificate=sweep.certificate,
         notices=(
             *waves.notices(),
             *radiation_notices(operators.condition, operators.radius, waves),
+            *far.notices,
         ),
     )
+
+
+def _patterns(case: Case, peaks: Peaks) -> FloatArray:
+    """Frequencies whose directivity is told [Hz]: the peaks, then those of the case."""
+    return np.concatenate([peaks.frequency, np.array(case.far_field.frequencies)])
 
 
 def _nearest(frequency: FloatArray, wanted: FloatArray) -> IntArray:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import ngsolve as ngs
 import numpy as np
 from scipy.interpolate import make_interp_spline
+from scipy.sparse import csr_matrix
 
 from quietblade.case import Case
 from quietblade.errors import Notice
@@ -21,9 +22,10 @@ from quietblade.study.statics import Statics
 from quietblade.typing import AnyArray, FloatArray, Progress
 from quietblade.vibroacoustics.complex_modes import ComplexModes, complex_modes
 from quietblade.vibroacoustics.excitation import pressure_force
+from quietblade.vibroacoustics.fluid import normal_motion_matrix
 from quietblade.vibroacoustics.grid import refined_grid
 from quietblade.vibroacoustics.modes import WetModes, wet_modes
-from quietblade.vibroacoustics.multipoles import SurfaceSources
+from quietblade.vibroacoustics.multipoles import CLOSED_SURFACE, SurfaceSources
 from quietblade.vibroacoustics.naming import Naming, name_modes
 from quietblade.vibroacoustics.operators import CLAMPED, Operators, build_operators
 from quietblade.vibroacoustics.reduced import ReducedSweep, reduce_system
@@ -52,6 +54,8 @@ class Vibration:
         Area of the excited patch in this configuration [m2].
     sources : SurfaceSources
         For the outgoing waves.
+    normal_motion : csr_matrix
+        Square of the normal motion of the blade's whole surface, for the radiation efficiency.
     positions : (nodes, 3) float array
         Nodes of the mesh in this configuration [m].
     modes : WetModes
@@ -76,6 +80,7 @@ class Vibration:
     load: FloatArray
     area: float
     sources: SurfaceSources
+    normal_motion: csr_matrix
     positions: FloatArray
     modes: WetModes
     shapes: FloatArray
@@ -116,6 +121,7 @@ def solve_vibration(
         )
         force = pressure_force(mesh.fem, case.excitation.pressure, motion=field)
         sources = SurfaceSources.of(mesh.fem, mesh.basis, operators, motion=field)
+        normal_motion = normal_motion_matrix(mesh.fem, CLOSED_SURFACE, field)
     positions = mesh.nodes if motion is None else mesh.nodes + motion.displacement
     progress(name, 0.2, "matrices assembled")
     exact = symmetric_solver(case, precision="double")
@@ -155,6 +161,7 @@ def solve_vibration(
         load=load,
         area=_area(mesh, positions),
         sources=sources,
+        normal_motion=normal_motion,
         positions=positions,
         modes=modes,
         shapes=shapes,
@@ -173,7 +180,15 @@ def solve_vibration(
 
 
 def frequencies(case: Case, vibrations: list[Vibration]) -> FloatArray:
-    """Frequencies of the sweep [Hz], refined around the modes of all configurations."""
+    """Frequencies of the sweep [Hz], refined around the modes of all configurations.
+
+    Those at which the directivity is asked for are among them.
+    """
+    grid = _refined(case, vibrations)
+    return np.union1d(grid, np.array(case.far_field.frequencies))
+
+
+def _refined(case: Case, vibrations: list[Vibration]) -> FloatArray:
     damped = [vibration.damped for vibration in vibrations]
     modes = (
         np.concatenate([d.frequency for d in damped]),

@@ -10,7 +10,8 @@ from string import Template
 from quietblade.results.headline import summarise
 from quietblade.results.model import Result
 from quietblade.results.store import RunFolder
-from quietblade.results.tables import Table, summary_tables
+from quietblade.results.table import Table
+from quietblade.results.tables import summary_tables
 from quietblade.typing import Progress, silent
 from quietblade.view.figures import draw_figures
 
