@@ -26,6 +26,7 @@ def case_tables(case: Case, known: Preflight) -> list[tuple[str, Rows]]:
         ("Blade", _blade_rows(case, known)),
         ("Flow", _flow_rows(case, known)),
         ("Acoustics", _acoustics_rows(case, known)),
+        ("Sound far away", _far_rows(case)),
         ("Numbers", _number_rows(case, known)),
     ]
 
@@ -93,6 +94,24 @@ def _acoustics_rows(case: Case, known: Preflight) -> Rows:
             f"chord {_percent(patch.chord)}",
         ),
     ]
+
+
+def _far_rows(case: Case) -> Rows:
+    far, limits = case.far_field, case.limits
+    given = "".join(f", {f:.6g} Hz" for f in far.frequencies)
+    place = "far away" if far.distance is None else f"at {far.distance:g} m"
+    rows = [
+        ("directivity", f"{place}, planes {', '.join(far.planes)}, at the peaks{given}"),
+        ("bands", "decidecades" if case.bands.kind == "decidecade" else "third octaves, base two"),
+    ]
+    for point in far.points:
+        rows.append(("pressure at", f"({', '.join(f'{x:.4g}' for x in point)}) m"))
+    for limit in limits:
+        values = f"from {limit.table}" if limit.table else f"{len(limit.levels)} levels"
+        rows.append(
+            ("limit", f"{limit.name}: {limit.quantity}, bands {limit.bands}, {values}"),
+        )
+    return rows
 
 
 def _number_rows(case: Case, known: Preflight) -> Rows:

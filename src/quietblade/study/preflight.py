@@ -84,7 +84,7 @@ def preflight(case: Case) -> Preflight:
     findings = [
         *_sphere_findings(case, clearance, outermost),
         *_mesh_findings(case, blade, faces),
-        *far_field_findings(case, blade, centre),
+        *far_field_findings(case, blade),
     ]
     if findings:
         raise case.invalid(*findings)

@@ -12,7 +12,7 @@ from quietblade.results.files import replacing
 from quietblade.results.model import Result
 from quietblade.results.store import RunFolder
 from quietblade.typing import AnyArray, Progress, silent
-from quietblade.view import scenes, sections, spectra
+from quietblade.view import bands, directivity, far_spectra, scenes, sections, spectra
 from quietblade.view.style import DPI
 
 Drawing = Callable[[], Figure]
@@ -88,6 +88,20 @@ def _drawings(folder: RunFolder, result: Result) -> Mapping[str, Drawing]:
     first = next(iter(result.configurations))
     drawings["sound-power"] = lambda: spectra.draw_sound_power(result, pictures(first))
     drawings["power-paths"] = lambda: spectra.draw_power_paths(result)
+    return drawings | _far_field(result)
+
+
+def _far_field(result: Result) -> dict[str, Drawing]:
+    first = next(iter(result.configurations.values()))
+    drawings: dict[str, Drawing] = {"source-level": lambda: spectra.draw_source_level(result)}
+    if bands.has_bands(result):
+        drawings["bands"] = lambda: bands.draw_bands(result)
+    if any(len(c.directivity.frequency) for c in result.configurations.values()):
+        for plane in first.directivity.cut:
+            drawings[f"directivity-{plane}"] = partial(directivity.draw_polar, result, plane)
+        drawings["directivity"] = lambda: directivity.draw_balloons(result)
+    drawings["multipoles"] = lambda: far_spectra.draw_multipoles(result)
+    drawings["radiation-efficiency"] = lambda: far_spectra.draw_efficiency(result)
     return drawings
 
 

@@ -2,7 +2,8 @@
 """Curves of step 2: sound power over frequency, with the names of the modes at the peaks."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Self
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -13,6 +14,7 @@ from matplotlib.patches import ConnectionPatch
 from quietblade.results.model import REFERENCE_POWER, ConfigurationResult, Result, path
 from quietblade.results.peaks import Peak, find_peaks
 from quietblade.typing import AnyArray, FloatArray
+from quietblade.view.limits import draw_narrow_limits
 from quietblade.view.style import (
     BLACK,
     CONFIGURATION,
@@ -26,7 +28,9 @@ from quietblade.view.style import (
 )
 
 _LEVEL = "Sound power level $L_W$ [dB re 1 pW]"
+_SOURCE_LEVEL = "Source level $L_S$ [dB re 1 µPa m]"
 _FREQUENCY = "Frequency [Hz]"
+_WORTH_TELLING = 0.1  # dB of error by the radiation condition
 _TITLES = {"C0": "C0, at rest", "C1": "C1, under load"}
 
 
@@ -35,6 +39,32 @@ class _Curve:
     label: str
     configuration: ConfigurationResult
     stroke: Stroke
+    level: FloatArray
+    peaks: Mapping[str, Peak]
+    tops: tuple[FloatArray, FloatArray]
+    """Frequencies and levels of all peaks, those without a mode too."""
+
+    @classmethod
+    def of_power(cls, label: str, configuration: ConfigurationResult, stroke: Stroke) -> Self:
+        peaks = configuration.peaks
+        return cls(
+            label, configuration, stroke, configuration.spectrum.power_level[path("sphere")],
+            find_peaks(configuration), (peaks.frequency, peaks.power_level),
+        )  # fmt: skip
+
+    @classmethod
+    def of_source(cls, label: str, configuration: ConfigurationResult, stroke: Stroke) -> Self:
+        frequency = configuration.peaks.frequency
+        level = configuration.directivity.source_level[: len(frequency)]  # peaks come first
+        at = dict(zip(frequency.tolist(), level.tolist(), strict=True))
+        named = {
+            name: replace(peak, level=at[peak.frequency])
+            for name, peak in find_peaks(configuration).items()
+        }
+        return cls(
+            label, configuration, stroke, configuration.far_field.source_level,
+            named, (frequency, level),
+        )  # fmt: skip
 
 
 @styled
@@ -50,21 +80,33 @@ def draw_sound_power(result: Result, pictures: Mapping[str, AnyArray] | None = N
         peak are drawn above it.
     """
     curves = [
-        _Curve(_TITLES[name], configuration, CONFIGURATION[name])
+        _Curve.of_power(_TITLES[name], configuration, CONFIGURATION[name])
         for name, configuration in result.configurations.items()
     ]
-    return _draw_spectra(curves, f"Sound power: {result.title}", pictures or {})
+    title = f"Sound power: {result.title}"
+    return _draw_spectra(curves, title, _LEVEL, pictures or {}, (result, "sound-power"))
+
+
+@styled
+def draw_source_level(result: Result) -> Figure:
+    """Source level at rest and under load, the mean over all directions."""
+    curves = [
+        _Curve.of_source(_TITLES[name], configuration, CONFIGURATION[name])
+        for name, configuration in result.configurations.items()
+    ]
+    title = f"Source level, mean over all directions: {result.title}"
+    return _draw_spectra(curves, title, _SOURCE_LEVEL, {}, (result, "source-level"))
 
 
 @styled
 def draw_sound_power_at_rest(results: Sequence[Result]) -> Figure:
     """Sound power of several blades at rest."""
     curves = [
-        _Curve(result.blade or result.title, result.configurations["C0"], stroke)
+        _Curve.of_power(result.blade or result.title, result.configurations["C0"], stroke)
         for result, stroke in zip(results, SERIES, strict=False)
         if "C0" in result.configurations
     ]
-    return _draw_spectra(curves, "Sound power at rest (C0)", {})
+    return _draw_spectra(curves, "Sound power at rest (C0)", _LEVEL, {})
 
 
 @styled
@@ -83,7 +125,7 @@ def draw_power_paths(result: Result) -> Figure:
                 label="radiated, sphere")  # fmt: skip
         ax.plot(f, radiated[path("multipoles")], color=VERMILION, linestyle=(0, (1.2, 1.2)),
                 label="radiated, multipoles")  # fmt: skip
-        title = f"{_TITLES[name]}; {_radiation_note(configuration)}"
+        title = f"{_TITLES[name]}; {radiation_note(configuration)}"
         ax.set(title=title, xlim=(f[0], f[-1]), ylabel="Power level\n[dB re 1 pW]")
         _keep_readable(ax, list(radiated), above=_level(spectrum.injected))
     figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=4)
@@ -91,30 +133,41 @@ def draw_power_paths(result: Result) -> Figure:
     return figure
 
 
-def _draw_spectra(curves: Sequence[_Curve], title: str, pictures: Mapping[str, AnyArray]) -> Figure:
+def _draw_spectra(
+    curves: Sequence[_Curve],
+    title: str,
+    unit: str,
+    pictures: Mapping[str, AnyArray],
+    limited: tuple[Result, str] | None = None,
+) -> Figure:
+    """Draw the spectra; ``limited`` is a result with limits, and the quantity of these levels."""
     shown = _peaks_with_picture(curves, pictures)
     figure = new_figure(4.9 if shown else 3.6)
     grid = figure.add_gridspec(2 if shown else 1, 1, height_ratios=[0.28, 1.0] if shown else [1.0])
     axes = figure.add_subplot(grid[-1])
     figure.suptitle(title, x=0.01, ha="left", fontsize=9.0)
-    axes.set(xlabel=_FREQUENCY, ylabel=_LEVEL)
+    axes.set(xlabel=_FREQUENCY, ylabel=unit)
     if not curves:
         return figure
-    levels = [curve.configuration.spectrum.power_level[path("sphere")] for curve in curves]
+    levels = [curve.level for curve in curves]
     frequency = curves[0].configuration.spectrum.frequency
     for curve, level in zip(curves, levels, strict=True):
         f = curve.configuration.spectrum.frequency
         # of a direct sweep the frequencies that were computed; the lines between them are not
         dot = "" if _is_reduced(curve.configuration) else "."
         axes.plot(f, level, label=curve.label, marker=dot, markersize=3.0, **curve.stroke.options())
+        axes.plot(*curve.tops, ".", color=curve.stroke.color, markersize=4.0)
     axes.set_xlim(frequency[0], frequency[-1])
-    _keep_readable(axes, levels)
+    allowed = np.zeros(0)
+    if limited is not None:
+        allowed = draw_narrow_limits(axes, limited[0].configurations, limited[1])
+    _keep_readable(axes, [*levels, *(curve.tops[1] for curve in curves), allowed])
     tops = _name_peaks(axes, curves)
     figure.legend(
         *axes.get_legend_handles_labels(),
         loc="outside lower center",
-        ncols=len(curves),
-        title="; ".join(dict.fromkeys(_radiation_note(c.configuration) for c in curves))
+        ncols=4,
+        title="; ".join(dict.fromkeys(radiation_note(c.configuration) for c in curves))
         + f"\n{_sweep_note([c.configuration for c in curves])}",
         title_fontsize=7.5,
     )
@@ -124,11 +177,14 @@ def _draw_spectra(curves: Sequence[_Curve], title: str, pictures: Mapping[str, A
     return figure
 
 
-def _radiation_note(configuration: ConfigurationResult) -> str:
-    kr = configuration.kr
+def radiation_note(configuration: ConfigurationResult) -> str:
+    """Name the radiation condition, its sphere, kR, and the error that it makes."""
+    kr, error = configuration.kr, np.abs(configuration.far_field.condition_error)
+    worst = float(np.nanmax(error)) if np.isfinite(error).any() else np.inf
+    wrong = f" (power wrong by up to {worst:.1f} dB)" if worst > _WORTH_TELLING else ""
     return (
         f"{configuration.radiation_condition} on a sphere of R = {configuration.outer_radius:.3g} m"
-        f", kR = {kr[0]:.2f} to {kr[-1]:.2f}"
+        f", kR = {kr[0]:.2f} to {kr[-1]:.2f}{wrong}"
     )
 
 
@@ -157,8 +213,7 @@ def _name_peaks(axes: Axes, curves: Sequence[_Curve]) -> dict[str, tuple[float, 
     placed: list[tuple[float, float]] = []
     first: dict[str, tuple[float, float]] = {}
     for order, curve in enumerate(curves):
-        for name, peak in find_peaks(curve.configuration).items():
-            axes.plot(peak.frequency, peak.level, ".", color=curve.stroke.color, markersize=4.0)
+        for name, peak in curve.peaks.items():
             if name in first and abs(first[name][0] - peak.frequency) < 0.35 * width:
                 continue  # all but the same peak has this name already
             foot = peak.level + 0.3 * height
@@ -205,7 +260,7 @@ def _peaks_with_picture(
     """Peaks of the first curve that have a picture, at most the six highest, by frequency."""
     if not curves:
         return ()
-    peaks = [p for name, p in find_peaks(curves[0].configuration).items() if name in pictures]
+    peaks = [p for name, p in curves[0].peaks.items() if name in pictures]
     highest = sorted(peaks, key=lambda p: -p.level)[:6]
     return tuple(sorted(highest, key=lambda p: p.frequency))
 
