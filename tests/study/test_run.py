@@ -25,7 +25,15 @@ COARSE = {
     "acoustics.points_per_mode": 3,
     "flow.sections": 41,
     "flow.section_nodes": 121,
-}
+    "far_field": {"frequencies": ["131 Hz"], "points": [["0 m", "400 m", "0.7 m"]]},
+    "limits": [
+        {"name": "low", "frequencies": ["50 Hz", "500 Hz"], "levels": ["0 dB", "0 dB"]},
+        {
+            "name": "high", "quantity": "source-level", "bands": "third-octave",
+            "frequencies": ["50 Hz", "500 Hz"], "levels": ["300 dB", "300 dB"],
+        },
+    ],
+}  # fmt: skip
 
 
 @pytest.fixture(scope="module")
@@ -74,6 +82,45 @@ def test_sweep_is_certified_and_its_peaks_are_told(result: Result) -> None:
         # no frequency of the grid is louder than the peaks
         top = np.nanmax(configuration.spectrum.power_level[path("sphere")])
         assert peaks.power_level.max() >= top - 1e-6
+
+
+def test_source_level_is_that_of_the_power_through_the_sphere(result: Result) -> None:
+    for configuration in result.configurations.values():
+        far, spectrum = configuration.far_field, configuration.spectrum
+        assert far.origin == "sphere"
+        difference = far.source_level - spectrum.power_level[path("sphere")]
+        np.testing.assert_allclose(difference, 50.7688, atol=1e-3)  # 10 lg(rho c / 4 pi)
+        np.testing.assert_allclose(far.share.sum(axis=0), 1.0)
+        assert np.all(far.efficiency < 1e-2)  # the water flows around so small a blade
+        assert np.all(far.condition_error < 0.05)
+        bands = configuration.bands
+        np.testing.assert_allclose(bands.source_level - bands.level, 50.7688, atol=1e-3)
+
+
+def test_directivity_at_the_peaks_and_where_asked(result: Result) -> None:
+    for configuration in result.configurations.values():
+        pattern, peaks = configuration.directivity, configuration.peaks
+        count = len(peaks.frequency)
+        np.testing.assert_allclose(pattern.frequency[:count], peaks.frequency)
+        assert pattern.reason[count:] == ("given",)
+        spectrum = configuration.spectrum
+        (place,) = np.flatnonzero(spectrum.frequency == 131.0)
+        level = spectrum.power_level[path("sphere"), place] + 50.7688
+        assert pattern.source_level[count] == pytest.approx(level, abs=1e-3)
+        # a point 400 m away along y against the pattern in that direction
+        told = configuration.far_field.pressure_level[0, place] + 20.0 * np.log10(400.0)
+        ahead = pattern.level[count, len(pattern.polar) // 2, len(pattern.azimuth) // 4]
+        assert told == pytest.approx(ahead, abs=0.2)
+
+
+def test_limits_are_held_against_peaks_and_bands(result: Result) -> None:
+    for configuration in result.configurations.values():
+        low, high = configuration.limits.worst_excess
+        assert low == pytest.approx(configuration.peaks.power_level.max(), abs=1e-6)
+        assert high < 0.0
+    told = summarise(result).limits
+    assert [limit.exceeded for limit in told if limit.name == "low"] == [True, True]
+    assert [limit.exceeded for limit in told if limit.name == "high"] == [False, False]
 
 
 def test_peaks_of_the_sweep_stand_on_the_modes(result: Result) -> None:

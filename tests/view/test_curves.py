@@ -37,6 +37,11 @@ def texts(figure: Figure) -> str:
     return "\n".join(t.get_text() for t in figure.findobj(mpl.text.Text))
 
 
+def names(axes: Axes) -> list[mpl.text.Text]:
+    """Names at the peaks, without the excess over a limit."""
+    return [t for t in axes.texts if not t.get_text().endswith("dB")]
+
+
 @pytest.mark.parametrize("name", FIGURES)
 def test_every_axis_has_a_unit(name: str) -> None:
     figure = FIGURES[name]()
@@ -55,7 +60,8 @@ def test_levels_name_their_reference_and_the_radiation_condition() -> None:
     for name in ("power", "power at rest", "paths"):
         written = texts(FIGURES[name]())
         assert "[dB re 1 pW]" in written, name
-        assert "BGT-1 on a sphere of R = 1.3 m, kR = 0.54 to 1.09" in written, name
+        condition = "BGT-1 on a sphere of R = 1.3 m, kR = 0.54 to 1.09"
+        assert f"{condition} (power wrong by up to 5.2 dB)" in written, name
 
 
 def test_the_spectra_are_those_of_the_result() -> None:
@@ -71,7 +77,7 @@ def test_the_spectra_are_those_of_the_result() -> None:
 
 def test_peaks_carry_the_names_of_their_modes() -> None:
     axes = first_axes(spectra.draw_sound_power(COMPOSITE))
-    named = sorted((t.get_text(), round(t.get_position()[0], 1)) for t in axes.texts)
+    named = sorted((t.get_text(), round(t.get_position()[0], 1)) for t in names(axes))
     # E2 of C1 is 1 Hz from that of C0 and shares its name
     assert named == [
         ("B5", 103.2), ("B6", 137.2), ("B6", 148.1), ("B7", 185.5), ("B7", 199.1),
@@ -121,7 +127,7 @@ def test_unsolved_frequencies_and_a_missing_configuration_are_drawn() -> None:
     holed = replace(c0, spectrum=replace(c0.spectrum, power=power))
     axes = first_axes(spectra.draw_sound_power(replace(COMPOSITE, configurations={"C0": holed})))
     assert np.all(np.isfinite(axes.get_ylim()))
-    assert [t.get_text() for t in axes.texts] == ["E2", "B6", "T2", "B7"]
+    assert [t.get_text() for t in names(axes)] == ["E2", "B6", "T2", "B7"]
 
 
 def test_deep_antiresonances_do_not_flatten_the_peaks() -> None:
