@@ -29,7 +29,12 @@ def sphere(condition: RadiationCondition) -> SphereModel:
 
 
 def solved(
-    condition: RadiationCondition, degree: int, *, reduced: bool = False, peaks: int = 1
+    condition: RadiationCondition,
+    degree: int,
+    *,
+    reduced: bool = False,
+    peaks: int = 1,
+    parts: int = 1,
 ) -> FarField:
     """Far field of a sphere of 0.5 m that moves with v_r = P_l(cos theta)."""
     model = sphere(condition)
@@ -49,8 +54,8 @@ def solved(
         rows = np.block([np.eye(2), 1j * np.eye(2)])
         sources = sources.on(columns)
     case = Case.parse(preset_text("paper-aluminium")).varied(ASKED)
-    spectrum = Samples(OMEGA, rows, sources, columns)
-    patterns = Samples(OMEGA[1:], rows[1:], sources, columns)
+    spectrum = Samples(OMEGA, parts * (rows,), sources, columns)
+    patterns = Samples(OMEGA[1:], parts * (rows[1:],), sources, columns)
     return solve_far_field(case, vibration, spectrum, patterns, peaks)
 
 
@@ -87,6 +92,18 @@ def test_an_approximate_condition_does_not_spoil_what_leaves() -> None:
     assert np.all(far.condition_error > 1.0)  # dB, of a dipole at kR = 0.8 and 1
     model = sphere(Bgt1())
     assert far.spectrum.waves.water == model.water == WATER
+
+
+def test_powers_of_independent_parts_add() -> None:
+    one, two = (far_field_result(1.0, solved(Dtn(4), 1, parts=n)) for n in (1, 2))
+    np.testing.assert_allclose(two.source_level - one.source_level, 10.0 * np.log10(2.0))
+    np.testing.assert_allclose(two.efficiency, one.efficiency)
+    np.testing.assert_allclose(two.share, one.share)
+    np.testing.assert_allclose(two.pressure_level - one.pressure_level, 10.0 * np.log10(2.0))
+    case = Case.parse(preset_text("paper-aluminium"))
+    single, double = (directivity_result(case, solved(Dtn(4), 1, parts=n)) for n in (1, 2))
+    np.testing.assert_allclose(double.index, single.index, atol=1e-9)
+    np.testing.assert_allclose(double.cut_level[0, 1].max(), single.cut_level[0, 1].max() + 3.0103)
 
 
 def test_pressure_at_points_near_and_far() -> None:

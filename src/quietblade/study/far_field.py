@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Sound away from the blade: waves, efficiency, pressure at points, patterns at frequencies."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,14 +22,15 @@ PEAK, GIVEN = "peak", "given"
 
 @dataclass(frozen=True, eq=False)
 class Samples:
-    """A response at some frequencies.
+    """A response at some frequencies, in parts that are independent of each other.
 
     Attributes
     ----------
     omega : (f,) float array
         [rad/s]
-    response : (f, n) complex array
-        Unknowns, or coordinates (f, k) on the columns.
+    responses : tuple of (f, n) complex arrays
+        Unknowns, or coordinates (f, k) on the columns, of each part; the powers of parts add. One
+        harmonic excitation is one part.
     sources : SurfaceSources
         Sources on the wetted surface, of the unknowns or of the coordinates.
     columns : (k, n) array or None
@@ -36,7 +38,7 @@ class Samples:
     """
 
     omega: FloatArray
-    response: ComplexArray
+    responses: tuple[ComplexArray, ...]
     sources: SurfaceSources
     columns: AnyArray | None = None
 
@@ -47,15 +49,35 @@ class Outside:
 
     Attributes
     ----------
-    waves : Multipoles
-        Outgoing waves: by the sphere's harmonics under the exact condition, else by the
-        Kirchhoff-Helmholtz integral, which does not see what the sphere reflects.
+    parts : tuple of Multipoles
+        Outgoing waves of each part: by the sphere's harmonics under the exact condition, else by
+        the Kirchhoff-Helmholtz integral, which does not see what the sphere reflects.
     efficiency : (f,) float array
         Radiation efficiency (theory: S2-47).
     """
 
-    waves: Multipoles
+    parts: tuple[Multipoles, ...]
     efficiency: FloatArray
+
+    @property
+    def waves(self) -> Multipoles:
+        """Waves of the first part, for what all parts have in common."""
+        return self.parts[0]
+
+    @property
+    def power(self) -> FloatArray:
+        """Power of all parts (f,) [W]."""
+        return np.asarray(sum(part.power for part in self.parts))
+
+    @property
+    def share(self) -> FloatArray:
+        """Share of monopole, dipole, quadrupole and all higher degrees in the power, (f, 4)."""
+        powers = np.zeros((len(self.waves.omega), 4))
+        for part in self.parts:
+            each = part.power_by_degree
+            powers[:, : min(3, each.shape[1])] += each[:, :3]
+            powers[:, 3] += each[:, 3:].sum(axis=1)
+        return np.asarray(powers / self.power[:, None])
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,7 +95,7 @@ class FarField:
     points : (p, 3) float array
         [m]
     pressure : (p, f) complex array
-        Sound pressure there [Pa].
+        Sound pressure there [Pa], of several parts the root of the sum of squares.
     patterns : Outside
         At the peaks, then at the frequencies that the user gives.
     reason : tuple of str
@@ -109,13 +131,20 @@ def solve_far_field(
     return FarField(
         origin="sphere" if _exact(vibration) else "multipoles",
         spectrum=whole,
-        condition_error=_condition_error(vibration, spectrum, whole.waves),
+        condition_error=_condition_error(vibration, spectrum, whole),
         points=points,
-        pressure=_pressure(vibration, spectrum, whole.waves, points),
+        pressure=_pressure(spectrum, whole, points),
         patterns=_outside(vibration, patterns),
         reason=(PEAK,) * peaks + (GIVEN,) * given,
         notices=(*_degree_notices(vibration, spectrum), *_near_points(case, vibration, points)),
     )
+
+
+def together(parts: Sequence[ComplexArray]) -> ComplexArray:
+    """Amplitude of independent parts: the root of the sum of squares; one part keeps its phase."""
+    if len(parts) == 1:
+        return parts[0]
+    return np.sqrt(sum(np.abs(part) ** 2 for part in parts)) + 0j
 
 
 def _exact(vibration: Vibration) -> bool:
@@ -123,47 +152,64 @@ def _exact(vibration: Vibration) -> bool:
 
 
 def _outside(vibration: Vibration, samples: Samples) -> Outside:
-    operators, omega = vibration.operators, samples.omega
-    if _exact(vibration):
-        waves = sphere_waves(operators, omega, samples.response, samples.columns)
-    else:
-        waves = samples.sources.multipoles(omega, samples.response)
-    efficiency = radiation_efficiency(
-        operators, vibration.normal_motion, omega, samples.response, waves.power, samples.columns
-    )
-    return Outside(waves, efficiency)
+    operators, omega, columns = vibration.operators, samples.omega, samples.columns
+    parts, plane = [], np.zeros(len(omega))
+    for response in samples.responses:
+        if _exact(vibration):
+            waves = sphere_waves(operators, omega, response, columns)
+        else:
+            waves = samples.sources.multipoles(omega, response)
+        one = np.ones(len(omega))
+        plane += 1.0 / radiation_efficiency(
+            operators, vibration.normal_motion, omega, response, one, columns
+        )
+        parts.append(waves)
+    power = np.asarray(sum(part.power for part in parts))
+    return Outside(tuple(parts), power / plane)
 
 
-def _condition_error(vibration: Vibration, samples: Samples, waves: Multipoles) -> FloatArray:
+def _condition_error(vibration: Vibration, samples: Samples, outside: Outside) -> FloatArray:
+    """Estimate of the part that is worst."""
     operators = vibration.operators
     if _exact(vibration):
-        share = degree_error(operators, samples.omega, samples.response, samples.columns)
-        return np.asarray(10.0 * np.log10(1.0 + share))
-    return estimated_error(operators.condition, operators.radius, waves)
+        shares = [
+            degree_error(operators, samples.omega, response, samples.columns)
+            for response in samples.responses
+        ]
+        return np.asarray(10.0 * np.log10(1.0 + np.max(shares, axis=0)))
+    errors = np.array(
+        [estimated_error(operators.condition, operators.radius, w) for w in outside.parts]
+    )
+    worst = np.argmax(np.where(np.isnan(errors), np.inf, np.abs(errors)), axis=0)
+    return np.asarray(errors[worst, np.arange(errors.shape[1])])
 
 
 def _degree_notices(vibration: Vibration, samples: Samples) -> list[Notice]:
     if not _exact(vibration):
         return []
-    solved = np.isfinite(samples.response).all(axis=1)
-    if not solved.any():
-        return []
-    return degree_notices(
-        vibration.operators, samples.omega[solved], samples.response[solved], samples.columns
-    )
+    found: list[Notice] = []
+    for response in samples.responses:
+        solved = np.isfinite(response).all(axis=1)
+        if solved.any():
+            found += degree_notices(
+                vibration.operators, samples.omega[solved], response[solved], samples.columns
+            )
+    return list(dict.fromkeys(found))
 
 
-def _pressure(
-    vibration: Vibration, samples: Samples, waves: Multipoles, points: FloatArray
-) -> ComplexArray:
+def _pressure(samples: Samples, outside: Outside, points: FloatArray) -> ComplexArray:
     """Pressure (p, f): outside the ball of the waves by them, nearer by the wetted surface."""
     pressure = np.empty((len(points), len(samples.omega)), dtype=np.complex128)
+    waves = outside.waves
     far = np.linalg.norm(points - waves.center, axis=1) > waves.reach
     if far.any():
-        pressure[far] = waves.pressure(points[far]).T
+        pressure[far] = together([part.pressure(points[far]) for part in outside.parts]).T
     if not far.all():
-        near = samples.sources.pressure(samples.omega, samples.response, points[~far])
-        pressure[~far] = near.T
+        near = [
+            samples.sources.pressure(samples.omega, response, points[~far])
+            for response in samples.responses
+        ]
+        pressure[~far] = together(near).T
     return pressure
 
 

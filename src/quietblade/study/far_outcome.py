@@ -5,13 +5,17 @@ import numpy as np
 
 from quietblade.case import Case
 from quietblade.results import model
-from quietblade.study.far_field import FarField
+from quietblade.study.far_field import FarField, Outside, together
 from quietblade.study.limits import bands_of, limits
 from quietblade.study.sound import Sound
-from quietblade.typing import FloatArray
+from quietblade.typing import ComplexArray, FloatArray
 from quietblade.vibroacoustics.bands import Bands, Limit, band_mean
-from quietblade.vibroacoustics.directivity import directivity, plane_directions, source_level
-from quietblade.vibroacoustics.multipoles import Multipoles
+from quietblade.vibroacoustics.directivity import (
+    directivity,
+    plane_directions,
+    pressure_level,
+    source_level,
+)
 from quietblade.vibroacoustics.power import level
 
 _ANGLES = 180  # of a polar diagram: every 2 degrees
@@ -46,9 +50,9 @@ def far_field_result(radius: float, far: FarField) -> model.FarFieldResult:
         origin=far.origin,
         frequency=waves.omega / (2.0 * np.pi),
         kr=waves.omega * radius / waves.water.sound_speed,
-        source_level=source_level(waves.power, waves.water),
+        source_level=source_level(far.spectrum.power, waves.water),
         efficiency=far.spectrum.efficiency,
-        share=_shares(waves).T,
+        share=far.spectrum.share.T,
         condition_error=far.condition_error,
         place=far.points,
         pressure=far.pressure,
@@ -65,16 +69,17 @@ def directivity_result(case: Case, far: FarField) -> model.DirectivityResult:
     azimuth = 2.0 * np.pi * np.arange(_AZIMUTH) / _AZIMUTH
     around = _sphere(polar, azimuth)
     count, shape = len(waves.omega), (len(waves.omega), _POLAR, _AZIMUTH)
-    found = directivity(waves, around, distance)
-    in_planes = directivity(waves, np.concatenate(cuts), distance).level
-    top = np.argmax(found.index, axis=1)
+    product, mean = _directed(far.patterns, around, distance)
+    in_planes = pressure_level(_directed(far.patterns, np.concatenate(cuts), distance)[0])
+    top = np.argmax(np.abs(product), axis=1)
+    loudest = np.abs(product[np.arange(count), top]) ** 2
     return model.DirectivityResult(
         frequency=waves.omega / (2.0 * np.pi),
         reason=far.reason,
-        source_level=source_level(waves.power, waves.water),
+        source_level=source_level(far.patterns.power, waves.water),
         efficiency=far.patterns.efficiency,
-        share=_shares(waves),
-        index=found.index[np.arange(count), top],
+        share=far.patterns.share,
+        index=10.0 * np.log10(loudest / mean),
         loudest=around[top],
         centre=waves.center,
         distance=distance,
@@ -83,9 +88,22 @@ def directivity_result(case: Case, far: FarField) -> model.DirectivityResult:
         cut_level=in_planes.reshape(count, len(cuts), _ANGLES),
         polar=polar,
         azimuth=azimuth,
-        level=found.level.reshape(shape),
-        product=found.product.reshape(shape),
+        level=pressure_level(product).reshape(shape),
+        product=product.reshape(shape),
     )
+
+
+def _directed(
+    outside: Outside, directions: FloatArray, distance: float
+) -> tuple[ComplexArray, FloatArray]:
+    """Pressure times distance (f, d) [Pa m] of all parts, and its mean square (f,)."""
+    found = [directivity(part, directions, distance) for part in outside.parts]
+    mean = np.zeros(len(outside.waves.omega))
+    for each in found:
+        top = np.argmax(np.abs(each.product), axis=1)[:, None]
+        squared = np.abs(np.take_along_axis(each.product, top, 1)) ** 2
+        mean += (squared / 10.0 ** (np.take_along_axis(each.index, top, 1) / 10.0))[:, 0]
+    return together([each.product for each in found]), mean
 
 
 def limit_table(case: Case, sound: Sound) -> model.LimitTable:
@@ -117,12 +135,12 @@ def _limit_rows(
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Frequencies [Hz], levels there and levels of the limit [dB]."""
     frequency, through, leaving = _solved(sound)
-    at_peaks = sound.far.patterns.waves.only(slice(len(sound.peaks.frequency)))
     of_waves = quantity == "source-level"
     power = leaving if of_waves else through
     if kind == "narrow":
         # a needle of the reduced model may stand between two frequencies of the sweep
-        top = at_peaks.power if of_waves else sound.peaks.power
+        at_peaks = sound.far.patterns.power[: len(sound.peaks.frequency)]
+        top = at_peaks if of_waves else sound.peaks.power
         power = np.concatenate([power, top])
         frequency = np.concatenate([frequency, sound.peaks.frequency])
         frequency, first = np.unique(frequency, return_index=True)
@@ -146,7 +164,7 @@ def _worst(frequency: FloatArray, found: FloatArray, allowed: FloatArray) -> tup
 
 def _solved(sound: Sound) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Frequencies that have a solution, power through the sphere and of the outgoing waves."""
-    through, leaving = sound.budget.radiated, sound.far.spectrum.waves.power
+    through, leaving = sound.budget.radiated, sound.far.spectrum.power
     solved = np.isfinite(through)
     return sound.frequency[solved], through[solved], leaving[solved]
 
@@ -157,14 +175,6 @@ def _whole(kind: str, frequency: FloatArray) -> Bands:
     bands = bands_of(kind, low, high)
     covered = (bands.lower >= low * (1.0 - 1e-9)) & (bands.upper <= high * (1.0 + 1e-9))
     return Bands(bands.centre[covered], bands.lower[covered], bands.upper[covered])
-
-
-def _shares(waves: Multipoles) -> FloatArray:
-    """Share of monopole, dipole, quadrupole and all higher degrees, (f, 4)."""
-    share = waves.share
-    low = np.zeros((len(share), 3))
-    low[:, : min(3, share.shape[1])] = share[:, :3]
-    return np.column_stack([low, share[:, 3:].sum(axis=1)])
 
 
 def _sphere(polar: FloatArray, azimuth: FloatArray) -> FloatArray:

@@ -101,8 +101,8 @@ def _direct(case: Case, vibration: Vibration, frequency: FloatArray, progress: P
     far = solve_far_field(
         case,
         vibration,
-        Samples(response.omega, response.solution, sources),
-        Samples(response.omega[there], response.solution[there], sources),
+        Samples(response.omega, (response.solution,), sources),
+        Samples(response.omega[there], (response.solution[there],), sources),
         len(peaks.frequency),
     )
     failed = [
@@ -150,8 +150,8 @@ def _reduced(case: Case, vibration: Vibration, frequency: FloatArray, progress: 
     far = solve_far_field(
         case,
         vibration,
-        Samples(omega, y, sources, columns),
-        Samples(asked, at_asked, sources, columns),
+        Samples(omega, (y,), sources, columns),
+        Samples(asked, (at_asked,), sources, columns),
         len(peaks.frequency),
     )
     nearest = _nearest(frequency, vibration.damped.frequency)

@@ -76,7 +76,7 @@ class Multipoles:
         """Share of each degree in the power, (f, degree + 1): monopole, dipole, quadrupole, ..."""
         return np.asarray(self.power_by_degree / self.power[:, None])
 
-    def only(self, chosen: AnyArray | slice) -> Self:
+    def only(self, chosen: AnyArray) -> Self:
         """Return the same waves at some of the frequencies, by their places or a mask."""
         return replace(self, omega=self.omega[chosen], amplitudes=self.amplitudes[chosen])
 
