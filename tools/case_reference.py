@@ -57,7 +57,7 @@ def default(value: object) -> str:
     """Default of a field in SI units; a dash if there is none and the key may be left out."""
     if value is PydanticUndefined:
         return "must be given"
-    if value is None or value == "":
+    if value is None or value in ("", ()):
         return "-"
     plain = value.plain() if hasattr(value, "plain") else value
     if isinstance(plain, tuple):

@@ -11,6 +11,7 @@ from matplotlib.ticker import NullFormatter, NullLocator
 from quietblade.results.model import ConfigurationResult, Result
 from quietblade.typing import FloatArray
 from quietblade.view.limits import LIMITS, band_edges, chosen_limits, rows_of
+from quietblade.view.spectra import radiation_note
 from quietblade.view.style import CONFIGURATION, new_figure, styled
 
 _LABELS = {
@@ -48,7 +49,9 @@ def draw_bands(result: Result) -> Figure:
         for ax in figure.axes
         for handle, label in zip(*ax.get_legend_handles_labels(), strict=True)
     }
-    figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=3)
+    notes = dict.fromkeys(radiation_note(c) for c in result.configurations.values())
+    figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=4,
+                  title="; ".join(notes), title_fontsize=7.5)  # fmt: skip
     figure.suptitle(f"Level of the mean power in bands: {result.title}", x=0.01, ha="left",
                     fontsize=9.0)  # fmt: skip
     return figure

@@ -73,6 +73,7 @@ def _mark_worst(axes: Axes, name: str, configuration: ConfigurationResult, limit
         f"+{table.worst_excess[limit]:.1f} dB", (table.frequency[row], table.found[row]),
         xytext=(-5 if rest else 5, -3), textcoords="offset points", va="top",
         ha="right" if rest else "left", fontsize=7.5, color=CONFIGURATION[name].color,
+        bbox={"facecolor": "white", "alpha": 0.8, "pad": 0.5, "linewidth": 0.0},
     )  # fmt: skip
     axes.plot(
         table.frequency[row], table.found[row], "^", color=CONFIGURATION[name].color,
