@@ -12,6 +12,7 @@ from typing import Any, Self
 
 from pydantic import Field, PrivateAttr, ValidationError
 
+from quietblade.case.campbell import CampbellWords
 from quietblade.case.explain import explain, material_findings
 from quietblade.case.fields import Text, Words
 from quietblade.case.flow import FlowWords
@@ -56,6 +57,9 @@ class Case(Words):
     )
     acoustics: AcousticsWords = Field(title="Acoustics", description="Vibration and sound")
     excitation: ExcitationWords = Field(title="Excitation", description="Harmonic load")
+    campbell: CampbellWords | None = Field(
+        None, title="Campbell diagram", description="Wet modes over the speed of the shaft"
+    )
     mesh: MeshWords = Field(title="Mesh", description="Size of the elements")
     solver: SolverWords = Field(SolverWords(), title="Solver", description="Linear solver")
 

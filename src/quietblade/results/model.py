@@ -6,9 +6,9 @@ Angles are in rad. A number that was not computed is NaN, a text that does not a
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields, replace
 from types import MappingProxyType
-from typing import ClassVar
+from typing import Any, ClassVar, TypeVar
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from quietblade.results.record import Record
 from quietblade.typing import BoolArray, ComplexArray, FloatArray, IntArray
 
 NAN = float("nan")
+AnyRecord = TypeVar("AnyRecord", bound=Record)
 REFERENCE_POWER = 1e-12
 """Reference of sound power levels [W]."""
 
@@ -202,6 +203,25 @@ class StaticResult(Record):
         return len(self.history.lift)
 
 
+def without_state(result: StaticResult, name: str) -> StaticResult:
+    """Return the result with NaN in every row of a state that could not be computed."""
+
+    def blanked(record: AnyRecord) -> AnyRecord:
+        changes: dict[str, Any] = {}
+        for quantity in record.quantities():
+            if quantity.dims[:1] == ("state",):
+                values = np.array(getattr(record, quantity.name))
+                values[state(name)] = NAN
+                changes[quantity.name] = values
+        for member in fields(record):
+            inner = getattr(record, member.name)
+            if isinstance(inner, Record):
+                changes[member.name] = blanked(inner)
+        return replace(record, **changes)
+
+    return blanked(result)
+
+
 # --- step 2 -----------------------------------------------------------------------------------
 
 
@@ -219,6 +239,49 @@ class ModeTable(Record):
     partner: tuple[str, ...]
     partner_mac: FloatArray
     participation: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class ModeCount(Record):
+    """How many wet modes there are, and of what kind."""
+
+    group: ClassVar[str] = "C*/mode_count"
+    counted: int
+    highest: float
+    character: tuple[str, ...]
+    family_share: FloatArray
+    residual: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class LossShares(Record):
+    """Where each wet mode loses its energy."""
+
+    group: ClassVar[str] = "C*/loss_shares"
+    name: tuple[str, ...]
+    share: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class Participation(Record):
+    """Shares of the wet modes in the response at some frequencies."""
+
+    group: ClassVar[str] = "C*/participation"
+    frequency: FloatArray
+    share: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class DryModes(Record):
+    """Modes without water; none unless the case asks for them."""
+
+    group: ClassVar[str] = "C*/dry_modes"
+    name: tuple[str, ...]
+    frequency: FloatArray
+    loss_factor: FloatArray
+    purity: FloatArray
+    partner: tuple[str, ...]
+    partner_mac: FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -296,6 +359,10 @@ class ConfigurationResult(Record):
 
     group: ClassVar[str] = "C*"
     modes: ModeTable
+    mode_count: ModeCount
+    loss_shares: LossShares
+    participation: Participation
+    dry_modes: DryModes
     spectrum: Spectrum
     sweep: SweepRecord
     peaks: PeakTable
@@ -312,6 +379,39 @@ class ConfigurationResult(Record):
         """Wave number times outer radius, at the frequencies of the spectrum."""
         k = 2.0 * np.pi * self.spectrum.frequency / self.sound_speed
         return np.asarray(k * self.outer_radius, dtype=np.float64)
+
+
+@dataclass(frozen=True, eq=False)
+class CampbellDiagram(Record):
+    """Wet modes under load over the speed of the shaft; empty unless the case asks for it."""
+
+    group: ClassVar[str] = "campbell"
+    advance: str
+    blades: int
+    rotation: FloatArray
+    advance_speed: FloatArray
+    tip_displacement: FloatArray
+    order: IntArray
+    name: tuple[str, ...]
+    frequency: FloatArray
+    crossing_mode: tuple[str, ...]
+    crossing_order: IntArray
+    crossing_rotation: FloatArray
+    crossing_frequency: FloatArray
+
+    @classmethod
+    def none(cls) -> "CampbellDiagram":
+        """Return a diagram without speeds and modes."""
+        nothing, no_count = np.zeros(0), np.zeros(0, dtype=np.int64)
+        return cls(
+            "", 0, nothing, nothing, np.zeros((0, 3)), no_count, (), np.zeros((0, 0)),
+            (), no_count, nothing, nothing,
+        )  # fmt: skip
+
+    @property
+    def blade_rate(self) -> FloatArray:
+        """Frequency of the blade rate's multiples, (orders, speeds) [Hz]."""
+        return np.outer(self.order * self.blades, self.rotation) / (2.0 * np.pi)
 
 
 # --- mesh and run -----------------------------------------------------------------------------
@@ -461,6 +561,7 @@ class Result(Record):
         frequencies of the spectra in common.
     mesh : MeshResult
     run : RunRecord
+    campbell : CampbellDiagram
     """
 
     group: ClassVar[str] = ""
@@ -470,6 +571,7 @@ class Result(Record):
     configurations: Mapping[str, ConfigurationResult]
     mesh: MeshResult
     run: RunRecord
+    campbell: CampbellDiagram = field(default_factory=CampbellDiagram.none)
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Campbell diagram: wet modes over the speed of the shaft, with the blade rate's multiples."""
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from quietblade.results.model import CampbellDiagram, Result
+from quietblade.view.style import BLACK, BLUE, GREY, VERMILION, new_figure, styled
+
+_HEADROOM = 1.06
+
+
+@styled
+def draw_campbell(result: Result) -> Figure:
+    """Modes as curves with their names, orders as rays, crossings as rings.
+
+    Parameters
+    ----------
+    result : Result
+        Of a case with a table ``[campbell]``.
+    """
+    diagram = result.campbell
+    figure = new_figure(4.2)
+    axes = figure.subplots()
+    highest = _HEADROOM * float(np.nanmax(diagram.frequency))
+    first, last = float(diagram.rotation[0]), float(diagram.rotation[-1])
+    room = 0.06 * (last - first)
+    axes.set(
+        xlim=(first, last + room),
+        ylim=(0.0, highest),
+        xlabel=r"Speed of the shaft $\Omega_p$ [rad/s]",
+        ylabel="Frequency [Hz]",
+        title=f"Campbell diagram: {result.title}",
+    )
+    _draw_rays(axes, diagram, last, highest)
+    for name, values in zip(diagram.name, diagram.frequency, strict=True):
+        axes.plot(diagram.rotation, values, "o-", color=BLUE, markersize=3.0)
+        end = int(np.flatnonzero(np.isfinite(values))[-1])
+        axes.annotate(
+            name, (diagram.rotation[end], values[end]), (4.0, 0.0), textcoords="offset points",
+            va="center", fontsize=8.0, fontweight="bold", color=BLACK,
+        )  # fmt: skip
+    axes.plot(
+        diagram.crossing_rotation, diagram.crossing_frequency, "o", color=VERMILION,
+        markersize=7.0, markerfacecolor="none", markeredgewidth=1.3,
+    )  # fmt: skip
+    figure.text(
+        0.99, 0.005, f"{_blades(diagram)}; speed of advance {diagram.advance}; rings: crossings",
+        ha="right", va="bottom", fontsize=7.5, color=GREY,
+    )  # fmt: skip
+    return figure
+
+
+def _draw_rays(axes: Axes, diagram: CampbellDiagram, last: float, highest: float) -> None:
+    """Rays from the origin, labelled where they leave the picture."""
+    for order in diagram.order.tolist():
+        slope = order * diagram.blades / (2.0 * np.pi)
+        end = min(last, highest / slope)
+        axes.plot([0.0, end], [0.0, slope * end], color=GREY, linestyle="--", linewidth=0.9)
+        left = axes.get_xlim()[0]
+        if end <= left:
+            continue
+        axes.annotate(
+            f"{order} x" if diagram.blades == 1 else f"{order} x {diagram.blades}",
+            (end, slope * end), (-2.0, 3.0), textcoords="offset points",
+            ha="right", va="bottom", fontsize=7.5, color=GREY,
+        )  # fmt: skip
+
+
+def _blades(diagram: CampbellDiagram) -> str:
+    return f"{diagram.blades} blade{'s' if diagram.blades > 1 else ''}"
