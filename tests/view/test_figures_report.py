@@ -21,7 +21,7 @@ from quietblade.view.report import render_report
 NAMES = {
     "mesh", "deformed", "mid-section-normalised", "mid-section", "blade-angle",
     "lift-coefficient", "convergence", "mode-shapes-C0", "mode-shapes-C1", "sound-power",
-    "power-paths", "cavitation", "stress",
+    "power-paths", "cavitation", "stress", "campbell",
 }  # fmt: skip
 
 

@@ -25,7 +25,7 @@ def draw_campbell(result: Result) -> Figure:
     axes = figure.subplots()
     highest = _HEADROOM * float(np.nanmax(diagram.frequency))
     first, last = float(diagram.rotation[0]), float(diagram.rotation[-1])
-    room = 0.06 * (last - first)
+    room = max(0.06 * (last - first), 1e-3 * last)
     axes.set(
         xlim=(first, last + room),
         ylim=(0.0, highest),
@@ -35,7 +35,10 @@ def draw_campbell(result: Result) -> Figure:
     )
     _draw_rays(axes, diagram, last, highest)
     for name, values in zip(diagram.name, diagram.frequency, strict=True):
-        axes.plot(diagram.rotation, values, "o-", color=BLUE, markersize=3.0)
+        axes.plot(
+            diagram.rotation, values, "o-", color=BLUE, markersize=3.0,
+            label=f"wet modes, speed of advance {diagram.advance}",
+        )  # fmt: skip
         end = int(np.flatnonzero(np.isfinite(values))[-1])
         axes.annotate(
             name, (diagram.rotation[end], values[end]), (4.0, 0.0), textcoords="offset points",
@@ -43,12 +46,11 @@ def draw_campbell(result: Result) -> Figure:
         )  # fmt: skip
     axes.plot(
         diagram.crossing_rotation, diagram.crossing_frequency, "o", color=VERMILION,
-        markersize=7.0, markerfacecolor="none", markeredgewidth=1.3,
+        markersize=7.0, markerfacecolor="none", markeredgewidth=1.3, label="crossings",
     )  # fmt: skip
-    figure.text(
-        0.99, 0.005, f"{_blades(diagram)}; speed of advance {diagram.advance}; rings: crossings",
-        ha="right", va="bottom", fontsize=7.5, color=GREY,
-    )  # fmt: skip
+    handles, labels = axes.get_legend_handles_labels()
+    known = dict(zip(labels, handles, strict=True))  # one entry for all curves of a kind
+    figure.legend(known.values(), known.keys(), loc="outside lower center", ncols=3)
     return figure
 
 
@@ -57,12 +59,13 @@ def _draw_rays(axes: Axes, diagram: CampbellDiagram, last: float, highest: float
     for order in diagram.order.tolist():
         slope = order * diagram.blades / (2.0 * np.pi)
         end = min(last, highest / slope)
-        axes.plot([0.0, end], [0.0, slope * end], color=GREY, linestyle="--", linewidth=0.9)
+        axes.plot([0.0, end], [0.0, slope * end], color=GREY, linestyle="--", linewidth=0.9,
+                  label=f"multiples of the rate of {_blades(diagram)}")  # fmt: skip
         left = axes.get_xlim()[0]
         if end <= left:
             continue
         axes.annotate(
-            f"{order} x" if diagram.blades == 1 else f"{order} x {diagram.blades}",
+            f"{order} x {diagram.blades}",
             (end, slope * end), (-2.0, 3.0), textcoords="offset points",
             ha="right", va="bottom", fontsize=7.5, color=GREY,
         )  # fmt: skip
