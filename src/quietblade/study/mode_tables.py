@@ -137,6 +137,8 @@ def _response(vibration: Vibration, sound: Sound) -> tuple[FloatArray, ComplexAr
     if vibration.sweep is None or sound.peaks is None:
         return sound.snapshots, sound.solutions
     frequency = sound.peaks.frequency
+    if len(frequency) == 0:  # heavily damped modes make no peaks
+        return frequency, np.zeros((0, vibration.operators.size), dtype=complex)
     return frequency, vibration.sweep.model.solution(2.0 * np.pi * frequency)
 
 
