@@ -6,7 +6,8 @@ from collections.abc import Iterable
 import numpy as np
 
 from quietblade.results.claims import judge_claims
-from quietblade.results.model import CampbellDiagram, ConfigurationResult, Result, path, state
+from quietblade.results.mode_records import CampbellDiagram
+from quietblade.results.model import ConfigurationResult, Result, path, state
 from quietblade.results.peaks import find_peaks
 from quietblade.results.summary import (
     BalanceSummary,

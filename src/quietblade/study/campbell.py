@@ -15,7 +15,7 @@ from quietblade.mesh import Mesh
 from quietblade.mesh.motion import solve_mesh_motion
 from quietblade.propulsion.linear import newton_solver
 from quietblade.propulsion.structure import EquilibriumError
-from quietblade.results import model
+from quietblade.results import mode_records as records
 from quietblade.study.frames import SectionFrames
 from quietblade.study.statics import solve_equilibrium
 from quietblade.study.vibration import (
@@ -73,7 +73,7 @@ class ShaftSpeed:
 
 def solve_campbell(
     case: Case, words: CampbellWords, blade: Blade, mesh: Mesh, progress: Progress
-) -> tuple[model.CampbellDiagram, tuple[Notice, ...]]:
+) -> tuple[records.CampbellDiagram, tuple[Notice, ...]]:
     """Find the modes at each speed, and where multiples of the blade rate meet them.
 
     A speed at which the blade has no equilibrium is left out, with a notice.
@@ -90,7 +90,7 @@ def solve_campbell(
             )
     notices += _worst(points)
     if not points:
-        return model.CampbellDiagram.none(), tuple(notices)
+        return records.CampbellDiagram.none(), tuple(notices)
     traced = campbell(
         np.array([abs(point.rotation) for point in points]),
         [point.modes.frequency for point in points],
@@ -187,11 +187,11 @@ def _worst(points: Sequence[ShaftSpeed]) -> list[Notice]:
 
 def _diagram(
     case: Case, words: CampbellWords, points: Sequence[ShaftSpeed], traced: Campbell
-) -> model.CampbellDiagram:
+) -> records.CampbellDiagram:
     first = [int(np.argmax(row >= 0)) for row in traced.mode]
     names = tuple(points[k].naming.name[row[k]] for row, k in zip(traced.mode, first, strict=True))
     crossings = traced.crossings
-    return model.CampbellDiagram(
+    return records.CampbellDiagram(
         advance=words.advance,
         blades=case.flow.blades,
         rotation=traced.speed,

@@ -8,6 +8,7 @@ import numpy as np
 
 from quietblade.case import Case
 from quietblade.mesh import Mesh
+from quietblade.results import mode_records as records
 from quietblade.results import model
 from quietblade.study.sound import Sound
 from quietblade.study.vibration import Vibration, nodal_shapes, symmetric_solver
@@ -28,10 +29,10 @@ class ModeTables:
     """All tables of the modes of one configuration."""
 
     modes: model.ModeTable
-    count: model.ModeCount
-    losses: model.LossShares
-    participation: model.Participation
-    dry: model.DryModes
+    count: records.ModeCount
+    losses: records.LossShares
+    participation: records.Participation
+    dry: records.DryModes
 
 
 def mode_tables(
@@ -57,7 +58,7 @@ def mode_tables(
             modes=_mode_table(vibration, losses, matches.get(name), vibrations.get(partners)),
             count=_count(vibration),
             losses=losses,
-            participation=model.Participation(frequency, shares),
+            participation=records.Participation(frequency, shares),
             dry=_dry_modes(case, mesh, vibration) if case.acoustics.dry_modes else _no_dry_modes(),
         )
     return tables
@@ -82,7 +83,7 @@ def carried(mesh: Mesh, modes_of: Vibration, onto: Vibration) -> FloatArray:
 
 def _mode_table(
     vibration: Vibration,
-    losses: model.LossShares,
+    losses: records.LossShares,
     found: Match | None,
     other: Vibration | None,
 ) -> model.ModeTable:
@@ -107,9 +108,9 @@ def _mode_table(
     )
 
 
-def _count(vibration: Vibration) -> model.ModeCount:
+def _count(vibration: Vibration) -> records.ModeCount:
     modes, naming = vibration.modes, vibration.naming
-    return model.ModeCount(
+    return records.ModeCount(
         counted=modes.count,
         highest=modes.highest,
         character=naming.character,
@@ -118,7 +119,7 @@ def _count(vibration: Vibration) -> model.ModeCount:
     )
 
 
-def _losses(vibration: Vibration) -> model.LossShares:
+def _losses(vibration: Vibration) -> records.LossShares:
     """Shares of the damped modes where they are known, of the real ones elsewhere."""
     operators, modes, damped = vibration.operators, vibration.modes, vibration.damped
     real = {region: modes.losses[region] for region in operators.moduli}
@@ -129,7 +130,7 @@ def _losses(vibration: Vibration) -> model.LossShares:
     share = np.array(list(known.values())).T
     for column, values in enumerate(loss_shares(operators, damped).values()):
         share[damped.start[good], column] = values[good]
-    return model.LossShares(tuple(known), share)
+    return records.LossShares(tuple(known), share)
 
 
 def _response(vibration: Vibration, sound: Sound) -> tuple[FloatArray, ComplexArray]:
@@ -142,7 +143,7 @@ def _response(vibration: Vibration, sound: Sound) -> tuple[FloatArray, ComplexAr
     return frequency, vibration.sweep.model.solution(2.0 * np.pi * frequency)
 
 
-def _dry_modes(case: Case, mesh: Mesh, vibration: Vibration) -> model.DryModes:
+def _dry_modes(case: Case, mesh: Mesh, vibration: Vibration) -> records.DryModes:
     operators, wet, frames = vibration.operators, vibration.modes, vibration.frames
     mass = operators.terms["M"]
     own = np.einsum("ij,ij->i", wet.vectors, (mass @ wet.vectors.T).T)
@@ -153,7 +154,7 @@ def _dry_modes(case: Case, mesh: Mesh, vibration: Vibration) -> model.DryModes:
     naming = name_modes(frames.span, frames.chord, shapes, vibration.masses)
     pairs = match(found.vectors, wet.vectors, mass)
     names = vibration.naming.name
-    return model.DryModes(
+    return records.DryModes(
         name=naming.name,
         frequency=found.frequency,
         loss_factor=found.loss_factor,
@@ -163,6 +164,6 @@ def _dry_modes(case: Case, mesh: Mesh, vibration: Vibration) -> model.DryModes:
     )
 
 
-def _no_dry_modes() -> model.DryModes:
+def _no_dry_modes() -> records.DryModes:
     nothing = np.zeros(0)
-    return model.DryModes((), nothing, nothing, nothing, (), nothing)
+    return records.DryModes((), nothing, nothing, nothing, (), nothing)

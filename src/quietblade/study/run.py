@@ -13,7 +13,7 @@ from quietblade.errors import Notice
 from quietblade.linalg import default_threads
 from quietblade.mesh import Mesh, build_mesh
 from quietblade.mesh.motion import MeshMotion, solve_mesh_motion
-from quietblade.results import model
+from quietblade.results import mode_records as records
 from quietblade.results.files import ResultError
 from quietblade.results.model import Result
 from quietblade.results.store import RunFolder
@@ -86,7 +86,7 @@ def run_case(case: Case, folder: RunFolder, progress: Progress = silent) -> Resu
             sounds[name] = solve_sound(case, vibration, grid, report)
     with clock.stage("mode tables") as report:
         tables = mode_tables(case, mesh, vibrations, sounds, report)
-    diagram = model.CampbellDiagram.none()
+    diagram = records.CampbellDiagram.none()
     diagram_notices: tuple[Notice, ...] = ()
     if case.campbell is not None:
         with clock.stage("Campbell diagram") as report:

@@ -5,7 +5,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from quietblade.results.model import CampbellDiagram, Result
+from quietblade.results.mode_records import CampbellDiagram
+from quietblade.results.model import Result
 from quietblade.view.style import BLACK, BLUE, GREY, VERMILION, new_figure, styled
 
 _HEADROOM = 1.06
