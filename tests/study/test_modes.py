@@ -13,6 +13,7 @@ from quietblade.mesh import Mesh, build_mesh
 from quietblade.results.model import Result
 from quietblade.results.store import RunFolder
 from quietblade.study import translate
+from quietblade.study.campbell import solve_campbell
 from quietblade.study.frames import SectionFrames
 from quietblade.study.outcome import static_result
 from quietblade.study.preflight import preflight
@@ -154,6 +155,18 @@ def test_run_without_a_chained_computation_has_nan_in_its_rows(case: Case, mesh:
     for curves in (static.sections.lift_coefficient, static.performance.thrust):
         assert np.isnan(curves[1]).all()
         assert np.isfinite(curves[[0, 2]]).all()
+
+
+def test_speeds_without_an_equilibrium_are_left_out_with_a_notice(case: Case, mesh: Mesh) -> None:
+    hasty = case.varied({"static.method": "fixed-point", "static.max_iterations": 1})
+    assert hasty.campbell is not None
+    diagram, notices = solve_campbell(hasty, hasty.campbell, preflight(case).blade, mesh, silent)
+    assert diagram.name == ()
+    assert len(diagram.rotation) == 0
+    for speed, notice in zip(SPEEDS, notices, strict=True):
+        assert f"{speed:.4g} rad/s" in notice.where
+        assert "left out" in notice.message
+        assert "not converged" in notice.message
 
 
 def test_words_of_the_diagram_are_checked(case: Case) -> None:
