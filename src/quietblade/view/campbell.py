@@ -10,6 +10,7 @@ from quietblade.results.model import Result
 from quietblade.view.style import BLACK, BLUE, GREY, VERMILION, new_figure, styled
 
 _HEADROOM = 1.06
+_STAGGER, _LABELS = 0.08, 8  # step of the labels along the rays, and after how many it starts again
 
 
 @styled
@@ -56,19 +57,20 @@ def draw_campbell(result: Result) -> Figure:
 
 
 def _draw_rays(axes: Axes, diagram: CampbellDiagram, last: float, highest: float) -> None:
-    """Rays from the origin, labelled where they leave the picture."""
-    for order in diagram.order.tolist():
+    """Rays from the origin, each labelled a little farther from the right than the one before."""
+    left = axes.get_xlim()[0]
+    for place, order in enumerate(diagram.order.tolist()):
         slope = order * diagram.blades / (2.0 * np.pi)
         end = min(last, highest / slope)
         axes.plot([0.0, end], [0.0, slope * end], color=GREY, linestyle="--", linewidth=0.9,
                   label=f"multiples of the rate of {_blades(diagram)}")  # fmt: skip
-        left = axes.get_xlim()[0]
         if end <= left:
             continue
+        at = end - _STAGGER * (place % _LABELS) * (end - left)
         axes.annotate(
-            f"{order} x {diagram.blades}",
-            (end, slope * end), (-2.0, 3.0), textcoords="offset points",
-            ha="right", va="bottom", fontsize=7.5, color=GREY,
+            f"{order} x {diagram.blades}", (at, slope * at), (-2.0, 2.0),
+            textcoords="offset points", ha="right", va="bottom", fontsize=7.5, color=GREY,
+            bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.5, "alpha": 0.8},
         )  # fmt: skip
 
 
