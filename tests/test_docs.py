@@ -10,6 +10,7 @@ import pytest
 
 from quietblade.case import Case
 from quietblade.case.library import NAMES, SOURCE_OF
+from quietblade.study.preflight import preflight
 from tools import case_reference
 from verification.acoustics_closed_forms import bgt1, power_ratio
 
@@ -111,6 +112,14 @@ def test_examples_of_the_case_page_fit_into_a_case() -> None:
         keys = {f"{name}.{key}": value for name, t in tables.items() for key, value in t.items()}
         assert keys or lists
         whole.varied(keys | lists)
+
+
+def test_case_of_the_page_of_modes_is_a_case() -> None:
+    (example,) = toml_examples("docs/modes.md")
+    case = Case.parse(example)
+    assert case.campbell is not None
+    assert case.acoustics.flow_damping
+    preflight(case)
 
 
 def test_every_key_of_a_case_is_in_its_reference() -> None:

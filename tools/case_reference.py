@@ -26,7 +26,13 @@ from quietblade.case.structure import LOADS
 OUT = Path(__file__).resolve().parent.parent / "docs" / "_generated"
 
 HEAD = ("| key | meaning | SI unit or choice | default |", "|---|---|---|---|")
-TYPES = {"string": "text", "integer": "whole number", "number": "1", "object": "table"}
+TYPES = {
+    "string": "text",
+    "integer": "whole number",
+    "number": "1",
+    "object": "table",
+    "boolean": "true, false",
+}
 
 # How people write a value of a unit: from this magnitude on, one is so much, and called so.
 PRINTED = {
@@ -62,6 +68,8 @@ def default(value: object) -> str:
     plain = value.plain() if hasattr(value, "plain") else value
     if isinstance(plain, tuple):
         return ", ".join(map(str, plain))
+    if isinstance(plain, bool):
+        return str(plain).lower()
     return f"{plain:g}" if isinstance(plain, float) else str(plain)
 
 

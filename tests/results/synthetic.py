@@ -12,6 +12,7 @@ import numpy as np
 from quietblade.errors import Notice
 from quietblade.geometry import NacaFourDigit
 from quietblade.mesh import Mesh
+from quietblade.results import mode_records as records
 from quietblade.results import model as m
 from quietblade.results.store import RunFolder
 from quietblade.results.vtk import PointField, write_fields
@@ -86,6 +87,31 @@ def make_result(
             ),
         ),
         run=make_run(case_text),
+        campbell=make_campbell(),
+    )
+
+
+def make_campbell() -> records.CampbellDiagram:
+    """Southwell's law for three modes, and its crossings with two orders of five blades."""
+    rotation, rest, rise = np.linspace(0.0, 12.0, 7), np.array([12.0, 31.0, 48.0]), 1.8
+    frequency = np.sqrt(rest[:, None] ** 2 + rise * rotation**2 / (4.0 * np.pi**2))
+    frequency[2, :2] = np.nan  # a mode that comes into the band from above
+    slope = np.array([1, 2, 3]) * 5.0 / (2.0 * np.pi)
+    at = rest[:2, None] / np.sqrt(slope**2 - rise / (4.0 * np.pi**2))
+    mode, order = np.nonzero(at <= rotation[-1])
+    return records.CampbellDiagram(
+        advance="scaled",
+        blades=5,
+        rotation=rotation,
+        advance_speed=SPEED * rotation / 6.0,
+        tip_displacement=np.outer(rotation**2, [0.0, 1e-3, 0.0]),
+        order=np.array([1, 2, 3]),
+        name=("B1", "B2", "T1"),
+        frequency=frequency,
+        crossing_mode=tuple(("B1", "B2")[k] for k in mode),
+        crossing_order=order + 1,
+        crossing_rotation=at[mode, order],
+        crossing_frequency=slope[order] * at[mode, order],
     )
 
 
@@ -256,6 +282,18 @@ def make_configuration(
             partner=partners,
             partner_mac=np.full(len(names), 0.97),
             participation=strength,
+        ),
+        mode_count=records.ModeCount(
+            counted=len(names),
+            highest=260.0,
+            character=tuple("edgewise" if e else "bending" for e in edgewise),
+            family_share=np.tile([0.94, 0.03, 0.02, 0.01], (len(names), 1)),
+            residual=np.full(len(names), 1e-9),
+        ),
+        loss_shares=records.LossShares(("film", "radiation"), np.stack([film, radiation], axis=1)),
+        participation=records.Participation(f_n, np.eye(len(names))),
+        dry_modes=records.DryModes(
+            names, 2.5 * f_n, film, np.full(len(names), 0.97), names, np.full(len(names), 0.95)
         ),
         spectrum=m.Spectrum(
             frequency=frequency,

@@ -14,6 +14,7 @@ from pydantic import ValidationError
 from quietblade.results.comparison import compare_summaries, comparison_table
 from quietblade.results.documentation import json_schema, schema_page
 from quietblade.results.headline import summarise
+from quietblade.results.model import state, without_state
 from quietblade.results.summary import Summary
 from quietblade.results.tables import as_text, summary_tables
 from tests.results.synthetic import make_result, with_static
@@ -168,3 +169,25 @@ def test_differences() -> None:
     table = comparison_table(tuple(found.values()), ("first", "second"))
     row = next(row for row in table.rows if row[0] == "C0 T2 frequency")
     assert row == ("C0 T2 frequency", "162.7", "166.9", "+4.2", "+2.58", "Hz")
+
+
+def test_a_state_that_could_not_be_computed_is_null() -> None:
+    result = make_result("composite")
+    lost = replace(result, static=without_state(result.static, "chained"))
+    data = as_json(summarise(lost))
+    assert data["static"]["lift_chained_n"] is None
+    assert data["performance"]["chained"]["thrust_n"] is None
+    assert data["static"]["lift_n"] == as_json(summarise(result))["static"]["lift_n"]
+    assert np.isnan(lost.static.mid_section.placed[state("chained")]).all()
+    assert np.isfinite(lost.static.mid_section.placed[state("coupled")]).all()
+    assert np.isfinite(lost.static.history.error[1:]).all()
+    assert "and - N" in as_text("", summary_tables(summarise(lost)))
+
+
+def test_modes_tell_their_kind_loss_and_dry_partner() -> None:
+    text = as_text("", summary_tables(summarise(make_result("composite"))))
+    for part in ("by film", "by radiation", "dry [Hz]", "none missing", "edgewise", "3 x 5"):
+        assert part in text, part
+    (mode, *_) = summarise(make_result("composite")).modes.C1
+    assert mode.loss_factor == pytest.approx(sum(mode.loss_by_part.values()))
+    assert mode.dry_frequency_hz == pytest.approx(2.5 * mode.frequency_hz)

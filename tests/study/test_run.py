@@ -138,11 +138,40 @@ def test_peaks_of_the_sweep_stand_on_the_modes(result: Result) -> None:
 def test_static_load_moves_the_modes_and_keeps_their_shapes(result: Result) -> None:
     rest, loaded = (result.configurations[name].modes for name in ("C0", "C1"))
     bending = [k for k, name in enumerate(rest.name) if name in ("B1", "B2", "B3")]
-    assert np.all(rest.partner_mac[bending] > 0.8)
+    assert np.all(rest.partner_mac[bending] > 0.98)  # in the mass of blade and moved water
+    for k in bending:
+        back = loaded.name.index(rest.partner[k])
+        assert loaded.partner[back] == rest.name[k]
+        assert loaded.partner_mac[back] == pytest.approx(rest.partner_mac[k], rel=1e-9)
     shift = [
         loaded.frequency[loaded.name.index(rest.partner[k])] / rest.frequency[k] for k in bending
     ]
     assert np.all(np.abs(np.array(shift) - 1.0) > 1e-3)
+
+
+def test_losses_of_a_mode_add_up_and_none_is_missing(result: Result) -> None:
+    for configuration in result.configurations.values():
+        modes, losses = configuration.modes, configuration.loss_shares
+        assert losses.name == ("film", "radiation")
+        np.testing.assert_allclose(np.nansum(losses.share, axis=1), modes.loss_factor, rtol=1e-12)
+        inside = (modes.frequency > 80.0) & (modes.frequency < 180.0)
+        assert np.all(losses.share[inside] > 0.0)
+        count = configuration.mode_count
+        assert count.counted == len(modes.frequency)
+        assert count.highest == pytest.approx(1.2 * 180.0)
+        assert len(count.character) == count.counted
+        assert np.all(count.family_share.sum(axis=1) < 1.0 + 1e-9)
+
+
+def test_response_at_a_peak_is_its_mode(result: Result) -> None:
+    for configuration in result.configurations.values():
+        at, modes = configuration.participation, configuration.modes
+        assert np.all(at.share.sum(axis=1) < 1.0 + 1e-6)
+        highest = np.argmax(configuration.peaks.power_level)
+        row = np.argmin(np.abs(at.frequency - configuration.peaks.frequency[highest]))
+        best = np.argmax(at.share[row])
+        assert at.share[row, best] > 0.9
+        assert modes.frequency[best] == pytest.approx(at.frequency[row], rel=5e-3)
 
 
 def test_lift_grows_with_the_camber_of_the_composite_blade(result: Result) -> None:

@@ -9,8 +9,9 @@ import pytest
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from quietblade.results.model import path, state
+from quietblade.results.model import path, state, without_state
 from quietblade.view import sections, spectra
+from quietblade.view.campbell import draw_campbell
 from quietblade.view.style import CONFIGURATION, SERIES, STATE
 from tests.results.synthetic import make_result
 
@@ -25,6 +26,7 @@ FIGURES = {
     "convergence": lambda: sections.draw_convergence(COMPOSITE),
     "power": lambda: spectra.draw_sound_power(COMPOSITE),
     "power at rest": lambda: spectra.draw_sound_power_at_rest([ALUMINIUM, COMPOSITE]),
+    "campbell": lambda: draw_campbell(ALUMINIUM),
     "paths": lambda: spectra.draw_power_paths(COMPOSITE),
 }
 
@@ -106,6 +108,28 @@ def test_one_result_shows_its_states_and_several_their_coupled_ones() -> None:
     np.testing.assert_array_equal(
         curves["composite"], COMPOSITE.static.sections.lift_coefficient[row]
     )
+
+
+def test_a_state_that_could_not_be_computed_is_not_drawn() -> None:
+    lost = replace(COMPOSITE, static=without_state(COMPOSITE.static, "chained"))
+    one = first_axes(sections.draw_lift_coefficient([lost]))
+    assert [line.get_label() for line in one.lines] == ["rigid", "coupled"]
+
+
+def test_campbell_diagram_has_branches_rays_and_crossings() -> None:
+    axes = first_axes(draw_campbell(ALUMINIUM))
+    diagram = ALUMINIUM.campbell
+    curves = [line for line in axes.lines if str(line.get_label()).startswith("wet modes")]
+    assert len(curves) == len(diagram.name)
+    np.testing.assert_array_equal(curves[0].get_ydata(), diagram.frequency[0])
+    (rings,) = (line for line in axes.lines if line.get_label() == "crossings")
+    np.testing.assert_array_equal(rings.get_xdata(), diagram.crossing_rotation)
+    rays = [line for line in axes.lines if str(line.get_label()).startswith("multiples")]
+    ends = np.array([(line.get_data()[0][-1], line.get_data()[1][-1]) for line in rays])
+    slopes = diagram.order * diagram.blades / (2.0 * np.pi)
+    np.testing.assert_allclose(ends[:, 1] / ends[:, 0], slopes)
+    texts = {text.get_text() for text in axes.texts}
+    assert {"B1", "B2", "T1", "1 x 5", "3 x 5"} <= texts
 
 
 def test_angles_are_drawn_in_degrees() -> None:

@@ -23,6 +23,7 @@ Model = type[BaseModel]
 _TYPES = {
     "int_type": ("a whole number is needed", "Write a number such as 40, without quotes"),
     "float_type": ("a number is needed", "Write a number such as 0.5, without quotes"),
+    "bool_type": ("is neither true nor false", "Write true or false, without quotes"),
     "string_type": ("text is needed", "Write it in quotes"),
     "finite_number": ("is not a finite number", "Write a finite number"),
     "tuple_type": ("a list is needed", "Write the entries in [ ], tables below a header in [[ ]]"),

@@ -147,6 +147,7 @@ Fraction = Annotated[
 Number = Annotated[float, Strict()]
 Count = Annotated[int, Strict()]
 Text = Annotated[str, Strict()]
+Flag = Annotated[bool, Strict()]
 
 
 def entries(count: int) -> BeforeValidator:

@@ -12,6 +12,7 @@ from typing import Any, Self
 
 from pydantic import Field, PrivateAttr, ValidationError
 
+from quietblade.case.campbell import CampbellWords
 from quietblade.case.explain import explain, material_findings
 from quietblade.case.far_field import BandsWords, FarFieldWords, LimitWords
 from quietblade.case.fields import Text, Words
@@ -63,6 +64,9 @@ class Case(Words):
     bands: BandsWords = Field(BandsWords(), title="Bands", description="Bands of the levels")
     limits: tuple[LimitWords, ...] = Field(
         (), title="Limits", description="Limits that the levels are held against"
+    )
+    campbell: CampbellWords | None = Field(
+        None, title="Campbell diagram", description="Wet modes over the speed of the shaft"
     )
     mesh: MeshWords = Field(title="Mesh", description="Size of the elements")
     solver: SolverWords = Field(SolverWords(), title="Solver", description="Linear solver")

@@ -11,6 +11,7 @@ from quietblade.case.fields import (
     Count,
     Density,
     Extent,
+    Flag,
     Fraction,
     Frequency,
     Length,
@@ -261,6 +262,17 @@ class AcousticsWords(Words):
         "isochoric",
         title="Loss",
         description="Loss on the film's isochoric stiffness, or on its whole tangent (paper)",
+    )
+    flow_damping: Flag = Field(
+        False,
+        title="Flow damping",
+        description="Whether the stream along the blade damps it, by strip theory; left out in the "
+        "paper",
+    )
+    dry_modes: Flag = Field(
+        False,
+        title="Dry modes",
+        description="Whether to find the modes without water too, beside the wet ones",
     )
 
     @model_validator(mode="after")

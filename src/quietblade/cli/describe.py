@@ -88,6 +88,9 @@ def _acoustics_rows(case: Case, known: Preflight) -> Rows:
         ("gap", f"{_mm(known.clearance)} at rest, {_mm(acoustics.gap)} asked for"),
         ("radiation", f"{acoustics.radiation}, kR = {known.kr[0]:.3g} to {known.kr[1]:.3g}"),
         ("tangent, loss", f"{acoustics.tangent}, {acoustics.loss}"),
+        ("stream", "damps the blade" if acoustics.flow_damping else "does not damp the blade"),
+        ("modes", "wet and dry" if acoustics.dry_modes else "wet"),
+        *_campbell_rows(case),
         (
             "excitation",
             f"{patch.pressure:g} Pa on the {patch.side} face, span {_percent(patch.span)}, "
@@ -112,6 +115,22 @@ def _far_rows(case: Case) -> Rows:
             ("limit", f"{limit.name}: {limit.quantity}, bands {limit.bands}, {values}"),
         )
     return rows
+
+
+def _campbell_rows(case: Case) -> Rows:
+    words = case.campbell
+    if words is None:
+        return []
+    count = len(words.speeds)
+    orders = ", ".join(map(str, words.orders))
+    return [
+        (
+            "Campbell diagram",
+            f"{count} speeds from {words.speeds[0]:.4g} to {words.speeds[-1]:.4g} rad/s, advance "
+            f"{words.advance}, orders {orders} of {case.flow.blades} blades",
+        ),
+        ("  costs", f"{count} more equilibria, mesh motions and solutions for wet modes"),
+    ]
 
 
 def _number_rows(case: Case, known: Preflight) -> Rows:

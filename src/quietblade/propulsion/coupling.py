@@ -72,7 +72,7 @@ class StaticState:
     rigid, coupled : BladeFlow
         The flow about the undeformed blade, and about the blade in equilibrium.
     chained_flow : BladeFlow or None
-        The flow about the blade under the rigid blade's load, if it was asked for.
+        The flow about the blade under the rigid blade's load, if it was asked for and exists.
     history : tuple of CouplingStep
         Passes of the coupling.
     tolerance : float
@@ -109,9 +109,18 @@ class StaticState:
 
     @property
     def chained(self) -> BladeFlow:
-        """The flow about the blade under the rigid blade's load."""
+        """The flow about the blade under the rigid blade's load.
+
+        Raises
+        ------
+        ValueError
+            It was not asked for, or the blade has no equilibrium there (see the notices).
+        """
         if self.chained_flow is None:
-            raise ValueError("the chained computation was left out; use solve_static(chained=True)")
+            raise ValueError(
+                "there is no chained computation: it was left out (use solve_static(chained=True)) "
+                "or has no equilibrium"
+            )
         return self.chained_flow
 
     @property
@@ -229,6 +238,8 @@ def solve_static(
     if chained and (method == "newton" or len(ramp) > 1):
         way.chain(rigid, start_there=len(ramp) == 1)
     way.climb(ramp)
+    if chained:
+        way.miss_chained()
     good = way.good
     history, at_rest = tuple(way.history), None
     if not way.converged or suspicious(history):

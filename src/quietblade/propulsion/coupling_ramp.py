@@ -67,6 +67,7 @@ class Ramp:
         self.notices: list[Notice] = []
         self.chained_flow: BladeFlow | None = None
         self.reached, self.converged, self.reason = 0.0, False, ""
+        self._unchained = ""
         self._good: Point | None = None
         self._start = problem.rest()
 
@@ -103,13 +104,7 @@ class Ramp:
             point = Point(state, problem.structure.values(state), surface)
             self.chained_flow = problem.flow(point.displacement)
         except FAILURES as error:
-            self.notices.append(
-                Notice(
-                    "flow and structure",
-                    f"there is no chained computation, because the blade has no equilibrium under "
-                    f"the rigid blade's load: {error}",
-                )
-            )
+            self._unchained = str(error)
             return
         if start_there:
             self._start = point
@@ -117,6 +112,18 @@ class Ramp:
             seconds = perf_counter() - began
             self.history.append(
                 CouplingStep(1, np.inf, np.nan, tip, rigid.total.lift, state.newton, seconds)
+            )
+
+    def miss_chained(self) -> None:
+        """Notice that there is no chained computation, if there is none."""
+        if self.chained_flow is None:
+            self.notices.append(
+                Notice(
+                    "flow and structure",
+                    "there is no chained computation: the flow about the blade under the rigid "
+                    "blade's load was not found "
+                    f"({self._unchained or self.reason or 'the coupling ended with one pass'})",
+                )
             )
 
     def climb(self, ramp: Sequence[float]) -> None:

@@ -7,12 +7,16 @@ import numpy as np
 
 from quietblade.results.claims import judge_claims
 from quietblade.results.far_headline import far_field_summary, limit_summaries
+from quietblade.results.mode_records import CampbellDiagram
 from quietblade.results.model import ConfigurationResult, Result, path, state
 from quietblade.results.peaks import find_peaks
 from quietblade.results.summary import (
     BalanceSummary,
+    BranchSummary,
+    CampbellSummary,
     CellSummary,
     ClaimSummary,
+    CrossingSummary,
     FailureSummary,
     MeshSummary,
     ModesSummary,
@@ -29,6 +33,9 @@ from quietblade.typing import FloatArray
 
 NAN = float("nan")
 
+_SAME_PEAK = 1e-3
+"""Relative distance of frequencies that stand for one peak."""
+
 
 def summarise(result: Result) -> Summary:
     """Headline figures of a result."""
@@ -43,8 +50,14 @@ def summarise(result: Result) -> Summary:
         performance=_performance(result),
         strength=_strength(result),
         modes=ModesSummary(
-            C0=_modes(configurations.get("C0")), C1=_modes(configurations.get("C1"))
+            C0=_modes(configurations.get("C0")),
+            C1=_modes(configurations.get("C1")),
+            counted={name: c.mode_count.counted for name, c in configurations.items()},
+            complete_below_hz=min(
+                (c.mode_count.highest for c in configurations.values()), default=NAN
+            ),
         ),
+        campbell=_campbell(result.campbell),
         sound_power=_sound_power(result),
         far_field=far_field_summary(result),
         limits=tuple(limit_summaries(result)),
@@ -148,6 +161,7 @@ def _modes(configuration: ConfigurationResult | None) -> tuple[ModeSummary, ...]
     if configuration is None:
         return ()
     modes, peaks = configuration.modes, find_peaks(configuration)
+    losses, dry = configuration.loss_shares, configuration.dry_modes
     return tuple(
         ModeSummary(
             name=name,
@@ -156,11 +170,45 @@ def _modes(configuration: ConfigurationResult | None) -> tuple[ModeSummary, ...]
             purity=float(modes.purity[i]),
             partner=modes.partner[i],
             partner_mac=float(modes.partner_mac[i]),
+            kind=configuration.mode_count.character[i],
+            loss_by_part=dict(zip(losses.name, losses.share[i].tolist(), strict=True)),
+            dry_frequency_hz=(
+                float(dry.frequency[dry.partner.index(name)]) if name in dry.partner else None
+            ),
+            peak_share=_share(configuration, i, peaks[name].frequency) if name in peaks else None,
             peak_frequency_hz=peaks[name].frequency if name in peaks else None,
             peak_level_db=peaks[name].level if name in peaks else None,
             peak_width_hz=peaks[name].width if name in peaks else None,
         )
         for i, name in enumerate(modes.name)
+    )
+
+
+def _share(configuration: ConfigurationResult, mode: int, frequency: float) -> float | None:
+    """Share of a mode in the response nearest to a frequency, if it was split there."""
+    at = configuration.participation
+    near = np.flatnonzero(np.abs(at.frequency / frequency - 1.0) < _SAME_PEAK)
+    return float(at.share[near[0], mode]) if near.size else None
+
+
+def _campbell(diagram: CampbellDiagram) -> CampbellSummary:
+    crossings = zip(
+        diagram.crossing_mode, diagram.crossing_order.tolist(),
+        diagram.crossing_rotation.tolist(), diagram.crossing_frequency.tolist(), strict=True,
+    )  # fmt: skip
+    return CampbellSummary(
+        advance=diagram.advance,
+        blades=diagram.blades,
+        rotation_rad_s=tuple(diagram.rotation.tolist()),
+        advance_speed_m_s=tuple(diagram.advance_speed.tolist()),
+        branches=tuple(
+            BranchSummary(name=name, frequency_hz=tuple(row.tolist()))
+            for name, row in zip(diagram.name, diagram.frequency, strict=True)
+        ),
+        crossings=tuple(
+            CrossingSummary(mode=mode, order=order, rotation_rad_s=speed, frequency_hz=frequency)
+            for mode, order, speed, frequency in crossings
+        ),
     )
 
 

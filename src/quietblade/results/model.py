@@ -6,18 +6,26 @@ Angles are in rad. A number that was not computed is NaN, a text that does not a
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields, replace
 from types import MappingProxyType
-from typing import ClassVar
+from typing import Any, ClassVar, TypeVar
 
 import numpy as np
 
 from quietblade.errors import Notice
+from quietblade.results.mode_records import (
+    CampbellDiagram,
+    DryModes,
+    LossShares,
+    ModeCount,
+    Participation,
+)
 from quietblade.results.quantities import CONFIGURATIONS, LABELS
 from quietblade.results.record import Record
 from quietblade.typing import BoolArray, ComplexArray, FloatArray, IntArray
 
 NAN = float("nan")
+AnyRecord = TypeVar("AnyRecord", bound=Record)
 REFERENCE_POWER = 1e-12
 """Reference of sound power levels [W]."""
 
@@ -202,6 +210,25 @@ class StaticResult(Record):
         return len(self.history.lift)
 
 
+def without_state(result: StaticResult, name: str) -> StaticResult:
+    """Return the result with NaN in every row of a state that could not be computed."""
+
+    def blanked(record: AnyRecord) -> AnyRecord:
+        changes: dict[str, Any] = {}
+        for quantity in record.quantities():
+            if quantity.dims[:1] == ("state",):
+                values = np.array(getattr(record, quantity.name))
+                values[state(name)] = NAN
+                changes[quantity.name] = values
+        for member in fields(record):
+            inner = getattr(record, member.name)
+            if isinstance(inner, Record):
+                changes[member.name] = blanked(inner)
+        return replace(record, **changes)
+
+    return blanked(result)
+
+
 # --- step 2 -----------------------------------------------------------------------------------
 
 
@@ -367,6 +394,10 @@ class ConfigurationResult(Record):
 
     group: ClassVar[str] = "C*"
     modes: ModeTable
+    mode_count: ModeCount
+    loss_shares: LossShares
+    participation: Participation
+    dry_modes: DryModes
     spectrum: Spectrum
     sweep: SweepRecord
     peaks: PeakTable
@@ -535,6 +566,7 @@ class Result(Record):
         frequencies of the spectra in common.
     mesh : MeshResult
     run : RunRecord
+    campbell : CampbellDiagram
     """
 
     group: ClassVar[str] = ""
@@ -544,6 +576,7 @@ class Result(Record):
     configurations: Mapping[str, ConfigurationResult]
     mesh: MeshResult
     run: RunRecord
+    campbell: CampbellDiagram = field(default_factory=CampbellDiagram.none)
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -116,6 +116,10 @@ class ModeSummary(_Part):
     purity: Number = _of("C*/modes/purity")
     partner: str = _of("C*/modes/partner")
     partner_mac: Number = _of("C*/modes/partner_mac")
+    kind: str = _of("C*/mode_count/character")
+    loss_by_part: dict[str, Number] = _of("C*/loss_shares/share", "by region, stream, radiation")
+    dry_frequency_hz: Number = _of("C*/dry_modes/frequency", "of the dry mode that belongs to it")
+    peak_share: Number = _of("C*/participation/share", "at the mode's own peak")
     peak_frequency_hz: Number = Field(description="frequency of the mode's peak in the power [Hz]")
     peak_level_db: Number = Field(description="sound power level of that peak [dB re 1 pW]")
     peak_width_hz: Number = Field(description="half-power width of that peak [Hz]")
@@ -126,6 +130,35 @@ class ModesSummary(_Part):
 
     C0: tuple[ModeSummary, ...] = Field(description="at rest")
     C1: tuple[ModeSummary, ...] = Field(description="deformed by the steady load")
+    counted: dict[str, int] = _of("C*/mode_count/counted", "by configuration")
+    complete_below_hz: Number = _of("C*/mode_count/highest")
+
+
+class CrossingSummary(_Part):
+    """A multiple of the blade rate meets a mode."""
+
+    mode: str = _of("campbell/crossing_mode")
+    order: int = _of("campbell/crossing_order")
+    rotation_rad_s: Number = _of("campbell/crossing_rotation")
+    frequency_hz: Number = _of("campbell/crossing_frequency")
+
+
+class BranchSummary(_Part):
+    """A mode over the speed of the shaft."""
+
+    name: str = _of("campbell/name")
+    frequency_hz: tuple[Number, ...] = _of("campbell/frequency", "at each speed")
+
+
+class CampbellSummary(_Part):
+    """The Campbell diagram; empty unless the case asks for it."""
+
+    advance: str = _of("campbell/advance")
+    blades: int = _of("campbell/blades")
+    rotation_rad_s: tuple[Number, ...] = _of("campbell/rotation")
+    advance_speed_m_s: tuple[Number, ...] = _of("campbell/advance_speed")
+    branches: tuple[BranchSummary, ...] = Field(description="modes over the speed of the shaft")
+    crossings: tuple[CrossingSummary, ...] = Field(description="in ascending speed")
 
 
 class SoundPowerSummary(_Part):
@@ -268,6 +301,7 @@ class Summary(_Part):
     performance: PerformanceSummary
     strength: StrengthSummary
     modes: ModesSummary
+    campbell: CampbellSummary
     sound_power: SoundPowerSummary
     far_field: FarFieldSummary
     limits: tuple[LimitSummary, ...] = Field(description="limits of the case by configuration")

@@ -16,6 +16,9 @@ def summary_tables(summary: Summary) -> tuple[Table, ...]:
         _strength(summary),
         _modes(summary),
         *far_field_tables(summary),
+        _kinds(summary),
+        _campbell(summary),
+        _crossings(summary),
         _claims(summary),
         _checks(summary),
         _run(summary),
@@ -159,6 +162,64 @@ def _mode_row(rest: ModeSummary | None, loaded: ModeSummary | None) -> tuple[str
     )
 
 
+def _kinds(summary: Summary) -> Table:
+    """Kind of each mode, and where its energy goes."""
+    members = [("C0", mode) for mode in summary.modes.C0]
+    members += [("C1", mode) for mode in summary.modes.C1]
+    parts = list(dict.fromkeys(part for _, mode in members for part in mode.loss_by_part))
+    dry = any(mode.dry_frequency_hz is not None for _, mode in members)
+    heads = ["", "Mode", "kind", "purity", "wet [Hz]", *(["dry [Hz]"] if dry else []),
+             "loss factor", *(f"by {part}" for part in parts), "share of peak"]  # fmt: skip
+    rows = [
+        (
+            where,
+            mode.name,
+            mode.kind,
+            number(mode.purity, ".2f"),
+            number(mode.frequency_hz, ".2f"),
+            *([number(mode.dry_frequency_hz, ".2f")] if dry else []),
+            number(mode.loss_factor, ".2e"),
+            *(number(mode.loss_by_part.get(part), ".1e") for part in parts),
+            number(mode.peak_share, ".3f"),
+        )
+        for where, mode in members
+    ]
+    note = (
+        "purity: share of the kinetic energy in the family of the name, mixed below 0.6; share of "
+        "peak: that of the mode in the response at its own peak"
+    )
+    return Table("Kind and loss of the wet modes", tuple(heads), tuple(rows), note)
+
+
+def _campbell(summary: Summary) -> Table:
+    diagram = summary.campbell
+    heads = ("Mode [Hz]", *(f"{number(w)} rad/s" for w in diagram.rotation_rad_s))
+    speeds = ("advance [m/s]", *(number(v) for v in diagram.advance_speed_m_s))
+    rows = [
+        (branch.name, *(number(f, ".2f") for f in branch.frequency_hz))
+        for branch in diagram.branches
+    ]
+    note = f"wet modes under load over the speed of the shaft; speed of advance {diagram.advance}"
+    return Table("Campbell diagram", heads, (speeds, *rows) if rows else (), note)
+
+
+def _crossings(summary: Summary) -> Table:
+    diagram = summary.campbell
+    rows = tuple(
+        (
+            crossing.mode,
+            f"{crossing.order} x {diagram.blades}",
+            f"{number(crossing.rotation_rad_s)} rad/s",
+            f"{number(crossing.frequency_hz, '.2f')} Hz",
+        )
+        for crossing in diagram.crossings
+    )
+    if diagram.branches and not rows:
+        rows = (("none", "", "", ""),)
+    heads = ("Mode", "order x blades", "shaft", "frequency")
+    return Table("Crossings of modes and blade rate", heads, rows)
+
+
 def _claims(summary: Summary) -> Table:
     rows = tuple(
         (verdict(claim.agrees), claim.statement, claim.paper, claim.computed, claim.criterion)
@@ -178,6 +239,7 @@ def _checks(summary: Summary) -> Table:
         (),
         (
             ("Energy balance, worst", number(balance.max_relative_residual, ".1e")),
+            ("Modes, Sturm's count", _count(summary)),
             _sweep_check(summary),
             ("Sphere against wetted surface",
              f"{number(sound.max_surface_difference_db, '.2g')} dB"),
@@ -187,6 +249,12 @@ def _checks(summary: Summary) -> Table:
              ", ".join(f"{r} {number(q, '.3f')}" for r, q in summary.mesh.worst_quality.items())),
         ),
     )  # fmt: skip
+
+
+def _count(summary: Summary) -> str:
+    counted = ", ".join(f"{name} {count}" for name, count in summary.modes.counted.items())
+    below = number(summary.modes.complete_below_hz)
+    return f"{counted} below {below} Hz; all found, none missing" if counted else "-"
 
 
 def _sweep_check(summary: Summary) -> tuple[str, str]:

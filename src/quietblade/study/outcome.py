@@ -8,7 +8,6 @@ from datetime import UTC, datetime
 from importlib.metadata import version
 
 import numpy as np
-from scipy.sparse import csr_matrix, diags_array
 
 from quietblade import __version__
 from quietblade.case import Case
@@ -30,6 +29,7 @@ from quietblade.propulsion.loads_assembly import AppliedLoads
 from quietblade.propulsion.stress import StressReport
 from quietblade.results import model
 from quietblade.study import far_outcome
+from quietblade.study.mode_tables import ModeTables
 from quietblade.study.sound import Sound
 from quietblade.study.statics import Statics
 from quietblade.study.translate import environment
@@ -37,7 +37,6 @@ from quietblade.study.translate import inflow as inflow_of
 from quietblade.study.vibration import Vibration
 from quietblade.study.viscous import ViscousFlow
 from quietblade.typing import FloatArray
-from quietblade.vibroacoustics.matching import match
 from quietblade.vibroacoustics.power import level
 
 PACKAGES = ("ngsolve", "gmsh", "rslab", "numpy", "scipy", "xarray", "h5netcdf")
@@ -73,6 +72,8 @@ def static_result(case: Case, statics: Statics) -> model.StaticResult:
         divergence_ratio=state.divergence if np.isfinite(state.divergence) else np.nan,
         max_blade_shear_strain=statics.blade_shear,
     )
+    if state.chained_flow is None:
+        result = model.without_state(result, "chained")
     shear = statics.shear
     if shear is None:
         return result
@@ -241,12 +242,16 @@ def _placed(sections: DeformedSections, k: int) -> FloatArray:
 
 
 def configuration_result(
-    case: Case, vibration: Vibration, sound: Sound, other: Vibration | None
+    case: Case, vibration: Vibration, sound: Sound, tables: ModeTables
 ) -> model.ConfigurationResult:
-    """Modes and spectrum of one configuration; ``other`` is the configuration to compare with."""
+    """Modes and spectrum of one configuration."""
     operators = vibration.operators
     return model.ConfigurationResult(
-        modes=_mode_table(vibration, other),
+        modes=tables.modes,
+        mode_count=tables.count,
+        loss_shares=tables.losses,
+        participation=tables.participation,
+        dry_modes=tables.dry,
         spectrum=_spectrum(case, vibration, sound),
         sweep=_sweep(case, sound),
         peaks=_peaks(sound),
@@ -260,35 +265,6 @@ def configuration_result(
         water_density=operators.density,
         excitation_pressure=case.excitation.pressure,
         excitation_area=vibration.area,
-    )
-
-
-def _mode_table(vibration: Vibration, other: Vibration | None) -> model.ModeTable:
-    """Real modes; those in the band with the loss of the damped mode that belongs to them."""
-    modes, damped = vibration.modes, vibration.damped
-    loss, radiation = modes.loss_factor.copy(), np.full(len(modes.frequency), np.nan)
-    good = damped.converged
-    loss[damped.start[good]] = damped.loss_factor[good]
-    radiation[damped.start[good]] = damped.loss_factor[good] - modes.loss_factor[damped.start[good]]
-    work = np.abs(modes.vectors @ vibration.load)
-    partner, likeness = ("",) * len(loss), np.full(len(loss), np.nan)
-    if other is not None:
-        # each in the axes of its own sections: the bent blade carries its shapes with it
-        own, theirs = (v.shapes.reshape(len(v.shapes), -1) for v in (vibration, other))
-        found = match(own, theirs, csr_matrix(diags_array(np.repeat(vibration.masses, 3))))
-        names = other.naming.name
-        partner = tuple(names[k] if k >= 0 else "" for k in found.partner)
-        likeness = found.assurance
-    return model.ModeTable(
-        name=vibration.naming.name,
-        frequency=modes.frequency,
-        loss_factor=loss,
-        film_loss=modes.loss_factor,
-        radiation_loss=radiation,
-        purity=vibration.naming.purity,
-        partner=partner,
-        partner_mac=likeness,
-        participation=(work / work.max()) ** 2,
     )
 
 

@@ -85,6 +85,7 @@ def preflight(case: Case) -> Preflight:
         *_sphere_findings(case, clearance, outermost),
         *_mesh_findings(case, blade, faces),
         *far_field_findings(case, blade),
+        *_campbell_findings(case),
     ]
     if findings:
         raise case.invalid(*findings)
@@ -200,6 +201,24 @@ def _mesh_findings(case: Case, blade: Blade, faces: int) -> Iterator[Finding]:
             ("mesh", "water_size"),
             "must lie between the size on the blade and the sphere's radius",
             "Leave it out: a good size is then chosen",
+        )
+
+
+def _campbell_findings(case: Case) -> Iterator[Finding]:
+    words = case.campbell
+    if words is None or words.advance == "fixed":
+        return
+    if case.flow.rotation == 0.0:
+        yield Finding(
+            ("campbell", "advance"),
+            "the speed of advance cannot go with the shaft, which stands still in [flow]",
+            'Give flow.rotation, or write advance = "fixed"',
+        )
+    elif words.speeds[0] == 0.0:
+        yield Finding(
+            ("campbell", "speeds"),
+            'a shaft at rest has no water to advance in with advance = "scaled"',
+            'Begin above zero, or write advance = "fixed"',
         )
 
 

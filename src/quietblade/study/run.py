@@ -13,12 +13,15 @@ from quietblade.errors import Notice
 from quietblade.linalg import default_threads
 from quietblade.mesh import Mesh, build_mesh
 from quietblade.mesh.motion import MeshMotion, solve_mesh_motion
+from quietblade.results import mode_records as records
 from quietblade.results.files import ResultError
 from quietblade.results.model import Result
 from quietblade.results.store import RunFolder
 from quietblade.study import outcome, translate
+from quietblade.study.campbell import solve_campbell
 from quietblade.study.clock import Clock
 from quietblade.study.fields import write_static_fields, write_vibration_fields
+from quietblade.study.mode_tables import mode_tables
 from quietblade.study.preflight import preflight
 from quietblade.study.sound import Sound, solve_sound
 from quietblade.study.statics import Statics, solve_statics
@@ -81,6 +84,15 @@ def run_case(case: Case, folder: RunFolder, progress: Progress = silent) -> Resu
     for name, vibration in vibrations.items():
         with clock.stage(f"sweep {name}") as report:
             sounds[name] = solve_sound(case, vibration, grid, report)
+    with clock.stage("mode tables") as report:
+        tables = mode_tables(case, mesh, vibrations, sounds, report)
+    diagram = records.CampbellDiagram.none()
+    diagram_notices: tuple[Notice, ...] = ()
+    if case.campbell is not None:
+        with clock.stage("Campbell diagram") as report:
+            diagram, diagram_notices = solve_campbell(
+                case, case.campbell, facts.blade, mesh, report
+            )
     with clock.stage("files"):
         write_static_fields(mesh, statics, folder)
         for name, vibration in vibrations.items():
@@ -91,21 +103,19 @@ def run_case(case: Case, folder: RunFolder, progress: Progress = silent) -> Resu
         *statics.notices(case),
         *_singing(statics, vibrations),
         *chain.from_iterable(_step2_notices(motions[n], vibrations[n], sounds[n]) for n in motions),
+        *diagram_notices,
     )
     reports = {
         "flow and structure": statics.solver,
         **{f"modes {name}": vibration.solver for name, vibration in vibrations.items()},
         **{f"sweep {name}": sound.report for name, sound in sounds.items()},
     }
-    others = {"C0": "C1", "C1": "C0"}
     result = Result(
         title=case.title,
         blade=paper_blade(case),
         static=outcome.static_result(case, statics),
         configurations={
-            name: outcome.configuration_result(
-                case, vibration, sounds[name], vibrations.get(others[name])
-            )
+            name: outcome.configuration_result(case, vibration, sounds[name], tables[name])
             for name, vibration in vibrations.items()
         },
         mesh=outcome.mesh_result(mesh, next(iter(vibrations.values()))),
@@ -116,6 +126,7 @@ def run_case(case: Case, folder: RunFolder, progress: Progress = silent) -> Resu
             reports,
             notices,
         ),
+        campbell=diagram,
     )
     folder.save(result)
     return result

@@ -10,7 +10,7 @@ from quietblade.case import Case
 from quietblade.errors import Notice
 from quietblade.flow import limits
 from quietblade.geometry import Blade
-from quietblade.linalg import SolverReport
+from quietblade.linalg import SolverReport, SparseSolver
 from quietblade.mesh import Mesh
 from quietblade.mesh.surface import SurfaceQuadrature
 from quietblade.propulsion.coupling import StaticState, solve_static
@@ -51,7 +51,8 @@ class Statics:
     stress : StressReport
         Stress, strain and failure indices by region, and the reaction of the root.
     viscous : tuple of ViscousFlow
-        Friction on the rigid, the chained and the coupled blade.
+        Friction on the rigid, the chained and the coupled blade; where there is no chained one,
+        the coupled blade stands in its place.
     solver : SolverReport
         What the linear solvers did.
     """
@@ -120,9 +121,16 @@ def _failure_notices(region: RegionStress) -> Iterator[Notice]:
             )
 
 
-def solve_statics(case: Case, blade: Blade, mesh: Mesh, progress: Progress) -> Statics:
-    """Find the equilibrium of blade and flow that a case describes."""
-    solver = newton_solver()
+def solve_equilibrium(
+    case: Case,
+    blade: Blade,
+    mesh: Mesh,
+    solver: SparseSolver,
+    *,
+    chained: bool = True,
+    progress: Progress,
+) -> tuple[Structure, AppliedLoads | None, StaticState]:
+    """Find the blade that a case describes under its own lift, with its structure and loads."""
     springs = support(case)
     structure = Structure(
         mesh.fem,
@@ -152,8 +160,16 @@ def solve_statics(case: Case, blade: Blade, mesh: Mesh, progress: Progress) -> S
         tolerance=case.static.tolerance,
         max_iterations=case.static.max_iterations,
         newton_tolerance=case.static.newton_tolerance,
+        chained=chained,
         progress=progress,
     )
+    return structure, loads, state
+
+
+def solve_statics(case: Case, blade: Blade, mesh: Mesh, progress: Progress) -> Statics:
+    """Find the equilibrium of blade and flow that a case describes, and what follows from it."""
+    solver = newton_solver()
+    structure, loads, state = solve_equilibrium(case, blade, mesh, solver, progress=progress)
     shear, axes = None, {}
     if case.film is not None:
         axes = {"film": solids.surface_axes(blade, mesh.basis)}
@@ -161,7 +177,7 @@ def solve_statics(case: Case, blade: Blade, mesh: Mesh, progress: Progress) -> S
     plies = solids.blade_plies(case, blade, mesh.basis)
     stress = compute_stress(structure, state.structure, axes=axes, plies=plies)
     structure.forget()  # its factor is not needed in step 2
-    viscous = tuple(
-        viscous_flow(case, flow) for flow in (state.rigid, state.chained, state.coupled)
-    )
+    # without a chained computation its rows hold what `outcome` replaces by nan
+    chained = state.coupled if state.chained_flow is None else state.chained_flow
+    viscous = tuple(viscous_flow(case, flow) for flow in (state.rigid, chained, state.coupled))
     return Statics(structure, state, loads, shear, stress, viscous, solver.report())

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 
 import ngsolve as ngs
 import numpy as np
-from scipy.interpolate import make_interp_spline
 from scipy.sparse import csr_matrix
 
 from quietblade.case import Case
@@ -16,9 +15,12 @@ from quietblade.mesh import Mesh
 from quietblade.mesh.model import INTERFACE
 from quietblade.mesh.motion import MeshMotion
 from quietblade.mesh.surface import SurfaceQuadrature
-from quietblade.propulsion.tangent import compute_tangent
+from quietblade.propulsion.structure import Structure, StructureState
+from quietblade.propulsion.tangent import Tangent, compute_tangent
 from quietblade.study import translate
+from quietblade.study.frames import SectionFrames
 from quietblade.study.statics import Statics
+from quietblade.study.stream import with_stream
 from quietblade.typing import AnyArray, FloatArray, Progress
 from quietblade.vibroacoustics.complex_modes import ComplexModes, complex_modes
 from quietblade.vibroacoustics.excitation import pressure_force
@@ -60,8 +62,11 @@ class Vibration:
         Nodes of the mesh in this configuration [m].
     modes : WetModes
         Real modes, also somewhat above the band.
+    frames : SectionFrames
+        Places of the solid's nodes in the sections, and the axes of these.
     shapes : (m, solid nodes, 3) float array
-        Their motion in the axes of the (deformed) sections: chordwise, normal, along the span.
+        Motion of the modes in the axes of the (deformed) sections: chordwise, normal, along the
+        span.
     masses : (solid nodes,) float array
         Mass that each node stands for, up to a common factor.
     naming : Naming
@@ -83,6 +88,7 @@ class Vibration:
     normal_motion: csr_matrix
     positions: FloatArray
     modes: WetModes
+    frames: SectionFrames
     shapes: FloatArray
     masses: FloatArray
     naming: Naming
@@ -92,20 +98,16 @@ class Vibration:
     notices: tuple[Notice, ...]
 
 
-def solve_vibration(
+def linear_problem(
     case: Case,
-    blade: Blade,
     mesh: Mesh,
-    statics: Statics,
-    motion: MeshMotion | None,
-    progress: Progress,
-) -> Vibration:
-    """Set up the linear problem about C0 (no motion) or C1, and find its modes."""
-    name = "C0" if motion is None else "C1"
-    state = statics.structure.rest() if motion is None else statics.state.structure
-    tangent = compute_tangent(statics.structure, state)
+    structure: Structure,
+    state: StructureState,
+    field: ngs.GridFunction | None,
+) -> tuple[Tangent, Operators]:
+    """Assemble eq. (7) about a state of the structure, on the mesh that is moved to it."""
+    tangent = compute_tangent(structure, state)
     on_springs = case.root.support == "elastic"  # then the root face moves in the water too
-    field = None if motion is None else _field(mesh, motion)
     with ngs.TaskManager():
         operators = build_operators(
             mesh.fem,
@@ -119,10 +121,35 @@ def solve_vibration(
             wetted=f"{INTERFACE}|{CLAMPED}" if on_springs else INTERFACE,
             condition=translate.radiation(case, mesh, field),
         )
+    return tangent, operators
+
+
+def solve_vibration(
+    case: Case,
+    blade: Blade,
+    mesh: Mesh,
+    statics: Statics,
+    motion: MeshMotion | None,
+    progress: Progress,
+) -> Vibration:
+    """Set up the linear problem about C0 (no motion) or C1, and find its modes."""
+    name = "C0" if motion is None else "C1"
+    structure, flow = (
+        statics.structure,
+        statics.state.rigid if motion is None else statics.state.coupled,
+    )
+    state = structure.rest() if motion is None else statics.state.structure
+    field = None if motion is None else displacement_field(mesh, motion)
+    positions = mesh.nodes if motion is None else mesh.nodes + motion.displacement
+    frames = SectionFrames.of(blade, mesh, None if motion is None else flow.sections)
+    tangent, operators = linear_problem(case, mesh, structure, state, field)
+    slow: tuple[Notice, ...] = ()
+    if case.acoustics.flow_damping:
+        operators, slow = with_stream(case, mesh, operators, flow, positions, frames)
+    with ngs.TaskManager():
         force = pressure_force(mesh.fem, case.excitation.pressure, motion=field)
         sources = SurfaceSources.of(mesh.fem, mesh.basis, operators, motion=field)
         normal_motion = normal_motion_matrix(mesh.fem, CLOSED_SURFACE, field)
-    positions = mesh.nodes if motion is None else mesh.nodes + motion.displacement
     progress(name, 0.2, "matrices assembled")
     exact = symmetric_solver(case, precision="double")
     low, high = case.acoustics.band
@@ -139,12 +166,8 @@ def solve_vibration(
             solver=symmetric_solver(case),
             progress=progress,
         )
-    solid = mesh.basis.nodes_of("|".join(region for region in mesh.cells if region != "water"))
-    s, xi, _ = blade.locate(mesh.nodes[solid])
-    axes = _section_axes(blade, s, statics if motion is not None else None)
-    moved = nodal_shapes(mesh, operators, modes.vectors)[:, solid]
-    shapes = np.einsum("nai,mni->mna", axes, moved)
-    masses = _nodal_masses(mesh, operators)[solid]
+    shapes = frames.shapes(nodal_shapes(mesh, operators, modes.vectors))
+    masses = nodal_masses(mesh, operators)[frames.nodes]
     reach = (low / 1.02, high * 1.02)
     damped = complex_modes(
         operators,
@@ -164,17 +187,19 @@ def solve_vibration(
         normal_motion=normal_motion,
         positions=positions,
         modes=modes,
+        frames=frames,
         shapes=shapes,
         masses=masses,
-        naming=name_modes(s, xi, shapes, masses),
+        naming=name_modes(frames.span, frames.chord, shapes, masses),
         damped=damped,
         sweep=sweep.without_factor() if sweep else None,
         solver=exact.report(),
         notices=(
             *tangent.notices,
+            *slow,
             *modes.notices,
             *damped.notices,
-            *_coriolis(case, modes),
+            *coriolis(case.flow.rotation, modes),
         ),
     )
 
@@ -210,7 +235,8 @@ def symmetric_solver(case: Case, *, precision: Precision | None = None) -> Solve
     )
 
 
-def _field(mesh: Mesh, motion: MeshMotion) -> ngs.GridFunction:
+def displacement_field(mesh: Mesh, motion: MeshMotion) -> ngs.GridFunction:
+    """Motion of the mesh as a field."""
     field = ngs.GridFunction(ngs.VectorH1(mesh.fem, order=2))
     field.vec.FV().NumPy()[:] = mesh.basis.to_dofs(motion.displacement)
     return field
@@ -223,18 +249,7 @@ def nodal_shapes(mesh: Mesh, operators: Operators, vectors: AnyArray) -> AnyArra
     return np.array([mesh.basis.to_values(row) for row in full])
 
 
-def _section_axes(blade: Blade, s: FloatArray, statics: Statics | None) -> FloatArray:
-    """Rows chordwise, normal and along the span at span fractions, (n, 3, 3), on C0 or C1."""
-    if statics is None:
-        _, chordwise, normal = blade.frame(s)
-        return np.stack([chordwise, normal, np.cross(chordwise, normal)], axis=1)
-    sections = statics.state.coupled.sections
-    frames = np.stack([sections.chord_direction, sections.normal, sections.tangent], axis=1)
-    stations = np.linspace(0.0, 1.0, len(frames))
-    return np.asarray(make_interp_spline(stations, frames, k=1)(np.clip(s, 0.0, 1.0)))
-
-
-def _nodal_masses(mesh: Mesh, operators: Operators) -> FloatArray:
+def nodal_masses(mesh: Mesh, operators: Operators) -> FloatArray:
     """Mass that each node stands for, up to a common factor: the diagonal of the nodal matrix.
 
     Of the motion along the span, which the clamped root and the water do not touch elsewhere.
@@ -253,10 +268,11 @@ def _area(mesh: Mesh, positions: FloatArray) -> float:
     return float(np.linalg.norm(surface.area_vectors(positions), axis=-1).sum())
 
 
-def _coriolis(case: Case, modes: WetModes) -> tuple[Notice, ...]:
+def coriolis(rotation: float, modes: WetModes) -> tuple[Notice, ...]:
+    """Notice where the shaft [rad/s] turns fast against the lowest mode."""
     if len(modes.frequency) == 0 or modes.frequency[0] <= 0.0:
         return ()
-    ratio = 2.0 * case.flow.rotation / (2.0 * np.pi * modes.frequency[0])
+    ratio = 2.0 * abs(rotation) / (2.0 * np.pi * modes.frequency[0])
     if ratio <= FAST_SPIN:
         return ()
     remedy = "The modes of a blade that spins this fast need the Coriolis force"

@@ -97,6 +97,8 @@ def assurance(a: AnyArray, b: AnyArray, product: Product) -> FloatArray:
     (n_a, n_b) array
         Between 0 and 1; 0 for a vector without mass.
     """
+    if len(a) == 0 or len(b) == 0:
+        return np.zeros((len(a), len(b)))
     own = np.einsum("ij,ij->i", a.conj(), (product @ a.T).T).real
     momenta = (product @ b.T).T
     other = np.einsum("ij,ij->i", b.conj(), momenta).real

@@ -9,7 +9,7 @@ edgewise motion (e) add up to one with what is left over.  The nodes of h, theta
 the span give the number in the family.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal, get_args
 
@@ -21,6 +21,12 @@ from quietblade.typing import FloatArray, IntArray
 Family = Literal["B", "T", "E", "C"]
 FAMILIES: tuple[Family, ...] = get_args(Family)
 """Bending, torsion, edgewise, chordwise bending."""
+
+WORDS: Mapping[str, str] = {"B": "bending", "T": "torsion", "E": "edgewise", "C": "chordwise"}
+"""What the families are called."""
+
+MIXED = 0.6
+"""Purity below which a mode is called mixed."""
 
 _NODES_A_STATION = 24
 _STATIONS = (8, 60)  # fewest and most
@@ -48,6 +54,14 @@ class Naming:
     purity: FloatArray
     shares: FloatArray
     orders: IntArray
+
+    @property
+    def character(self) -> tuple[str, ...]:
+        """Word for the family of each mode, or ``mixed`` where less than `MIXED` is in it."""
+        return tuple(
+            WORDS[name[0]] if purity >= MIXED else "mixed"
+            for name, purity in zip(self.name, self.purity, strict=True)
+        )
 
 
 @dataclass(frozen=True, eq=False)

@@ -341,6 +341,8 @@ def _judge(
         return frequency, estimate
     *smaller, model = models
     needles, _ = model.light_modes((float(frequency.min()), float(frequency.max())))
+    if needles.size == 0:  # every mode of the band may be heavily damped
+        return frequency, estimate
     between = error_estimate(model, smaller, 2.0 * np.pi * needles)
     judged, first = np.unique(np.concatenate([frequency, needles]), return_index=True)
     return judged, np.concatenate([estimate, between])[first]

@@ -13,6 +13,7 @@ from quietblade.results.model import Result
 from quietblade.results.store import RunFolder
 from quietblade.typing import AnyArray, Progress, silent
 from quietblade.view import bands, directivity, far_spectra, scenes, sections, spectra
+from quietblade.view.campbell import draw_campbell
 from quietblade.view.style import DPI
 
 Drawing = Callable[[], Figure]
@@ -79,6 +80,8 @@ def _drawings(folder: RunFolder, result: Result) -> Mapping[str, Drawing]:
         "cavitation": lambda: sections.draw_cavitation(result),
         "convergence": lambda: sections.draw_convergence(result),
     }
+    if result.campbell.name:
+        drawings["campbell"] = lambda: draw_campbell(result)
     if not result.configurations:
         return drawings
     pictures = cache(partial(scenes.mode_pictures, folder))

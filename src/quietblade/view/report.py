@@ -71,6 +71,8 @@ _CAPTIONS = {
     "the radiation condition reflects.",
     "mode-shapes-C0": "Wet modes at rest.",
     "mode-shapes-C1": "Wet modes under load.",
+    "campbell": "Wet modes under load over the speed of the shaft, with the blade rate's multiples "
+    "as rays.",
 }
 
 

@@ -138,6 +138,8 @@ def draw_convergence(result: Result) -> Figure:
 def _members(results: Sequence[Result]) -> Iterator[tuple[str, StaticResult, int, Stroke]]:
     if len(results) == 1:
         for name in LABELS["state"]:
+            if np.isnan(results[0].static.lift[state(name)]):
+                continue  # it could not be computed
             yield _NAMES[name], results[0].static, state(name), STATE[name]
         return
     yield "rigid", results[0].static, state("rigid"), STATE["rigid"]

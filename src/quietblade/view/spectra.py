@@ -120,7 +120,7 @@ def draw_power_paths(result: Result) -> Figure:
         f = spectrum.frequency
         ax.plot(f, _level(spectrum.injected), color=BLACK, linewidth=1.0, label="injected")
         ax.plot(f, _level(spectrum.dissipated), color=GREEN, linestyle=(0, (5, 1.5, 1, 1.5)),
-                label="dissipated in the film")  # fmt: skip
+                label="dissipated")  # fmt: skip
         ax.plot(f, radiated[path("sphere")], **CONFIGURATION["C0"].options(),
                 label="radiated, sphere")  # fmt: skip
         ax.plot(f, radiated[path("multipoles")], color=VERMILION, linestyle=(0, (1.2, 1.2)),
