@@ -68,6 +68,7 @@ def make_result(
             "C0": make_configuration(shape, grid, loaded=False),
             "C1": make_configuration(shape, grid, loaded=True),
         },
+        moduli=make_moduli(),
         mesh=m.MeshResult(
             nodes=17036,
             cells=m.CellCensus(
@@ -305,6 +306,7 @@ def make_configuration(
             error_estimate=np.full(len(frequency), 2e-4),
             mobility=modal_mobility.sum(axis=0),
         ),
+        dissipation=_dissipation(frequency, injected - radiated, radiated),
         sweep=m.SweepRecord("reduced", 0.01, 2e-4, 16, 64, 1),
         peaks=peaks,
         bands=m.BandTable(
@@ -394,6 +396,48 @@ def _limits(frequency: FloatArray, power: FloatArray) -> m.LimitTable:
         found=np.concatenate([level, [115.5, 117.5]]),
         allowed=np.concatenate([narrow, [116.0, 115.0]]),
     )
+
+
+def _dissipation(frequency: FloatArray, lost: FloatArray, radiated: FloatArray) -> m.Dissipation:
+    power = np.stack([0.1 * lost, 0.9 * lost, radiated])
+    peaks = _peaks(frequency, radiated).frequency
+    at_peaks = power[:, np.searchsorted(frequency, peaks)]
+    return m.Dissipation(
+        sink=("blade", "film", "water"),
+        power=power,
+        mean_share=power.mean(axis=1) / power.mean(axis=1).sum(),
+        peak_frequency=peaks,
+        peak_share=at_peaks / at_peaks.sum(axis=0),
+    )
+
+
+def make_moduli() -> m.ModulusTable:
+    """A fitted film and a blade that is not isotropic, without a static modulus."""
+    frequency = np.geomspace(5.0, 2000.0, 41)
+    ratio = np.stack([_zener(frequency), 1.0 + 0.01j + 0.0 * frequency])
+    points = np.geomspace(10.0, 1000.0, 15)
+    scatter = 1.0 + 0.05 * np.sin(7.0 * np.arange(15))
+    ends = np.array([100.0, 200.0])
+    return m.ModulusTable(
+        name=("film", "blade"),
+        model=("table", "maxwell"),
+        static=np.array([1.5e6, np.nan]),
+        temperature=np.array([283.15, np.nan]),
+        shift=np.array([3.2, 1.0]),
+        fit_error=np.array([0.05, np.nan]),
+        band=ends,
+        band_ratio=np.stack([_zener(ends), np.full(2, 1.0 + 0.01j)]),
+        frequency=frequency,
+        ratio=ratio,
+        measured_modulus=np.zeros(15, dtype=int),
+        measured_frequency=points,
+        measured_ratio=scatter * _zener(points),
+    )
+
+
+def _zener(frequency: FloatArray) -> AnyArray:
+    z = (2j * np.pi * frequency * 1e-3) ** 0.6
+    return (1.0 + 8.0 * z) / (1.0 + z)
 
 
 def _peaks(frequency: FloatArray, power: FloatArray) -> m.PeakTable:

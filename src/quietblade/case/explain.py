@@ -12,6 +12,7 @@ from pydantic_core import ErrorDetails
 from quietblade.case.fields import CASE_PROBLEM, Quantity
 from quietblade.case.laminate import PlyWords
 from quietblade.case.library import LAW_OF
+from quietblade.case.loss import loss_model
 from quietblade.case.materials import BLADE_LAWS, FILM_LAWS, LAWS, ply_findings
 from quietblade.case.problems import Path, dotted, nearest, suggestion
 from quietblade.case.source import Finding
@@ -134,6 +135,8 @@ def _model_at(path: Path, data: Mapping[str, Any], root: Model) -> Model | None:
     if choice is not None:
         if path[2:3] == ("plies",) and len(path) == 4:
             return PlyWords
+        if path[2:3] == ("loss_factor",):
+            return loss_model(path[3:], _at(path[:3], data))
         return choice.model(_at(path, data)) if len(path) == 2 else None
     model: Model | None = root
     for part in path:

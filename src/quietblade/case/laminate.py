@@ -18,7 +18,7 @@ from quietblade.case.fields import (
     one_of,
     wrong,
 )
-from quietblade.case.loss import STRUCTURAL_LOSS, LossFactor
+from quietblade.case.loss import STRUCTURAL_LOSS, LossValue
 
 LaminateModel = Literal["homogenised", "plies"]
 Drape = Literal["symmetric", "through"]
@@ -75,7 +75,7 @@ class LaminateWords(Words):
     repeat: Annotated[Count, between(1, 1000)] = Field(
         1, title="Repeat", description="How often the list of plies is laid, one after the other"
     )
-    loss_factor: LossFactor | None = Field(
+    loss_factor: LossValue | None = Field(
         None,
         title="Loss factor",
         description=f"{STRUCTURAL_LOSS}; without it that of the plies, if they all have the same",

@@ -22,7 +22,7 @@ from quietblade.case.fields import (
     wrong,
 )
 from quietblade.case.laminate import LaminateWords
-from quietblade.case.loss import STRUCTURAL_LOSS, FilmLossFactor, LossFactor
+from quietblade.case.loss import FILM_LOSS, STRUCTURAL_LOSS, FilmLossValue, LossValue
 from quietblade.case.problems import suggestion
 from quietblade.case.source import Finding
 
@@ -44,7 +44,7 @@ class IsotropicWords(Words):
     density: Density = Field(title="Density", description="Mass per undeformed volume")
     E: Modulus = Field(title="Young's modulus", description="Young's modulus E")
     nu: Ratio = Field(title="Poisson's ratio", description="Poisson's ratio nu, between -1 and 1/2")
-    loss_factor: LossFactor = Field(0.0, title="Loss factor", description=STRUCTURAL_LOSS)
+    loss_factor: LossValue = Field(0.0, title="Loss factor", description=STRUCTURAL_LOSS)
     yield_strength: Strength | None = Field(
         None, title="Yield strength", description="Yield or 0.2 % proof stress of a metal"
     )
@@ -94,7 +94,7 @@ class OrthotropicWords(Words):
     Yt: Strength | None = Field(None, title="Yt", description="Tensile strength along axis 2")
     Yc: Strength | None = Field(None, title="Yc", description="Compressive strength along axis 2")
     S12: Strength | None = Field(None, title="S12", description="Shear strength in the ply")
-    loss_factor: LossFactor = Field(0.0, title="Loss factor", description=STRUCTURAL_LOSS)
+    loss_factor: LossValue = Field(0.0, title="Loss factor", description=STRUCTURAL_LOSS)
     source: Text = Field("", title="Source", description=_SOURCE)
 
     @property
@@ -188,7 +188,7 @@ class AnisotropicWords(Words):
         description="Angle from the span to axis 1, turning about the thickness axis towards the "
         "trailing edge",
     )
-    loss_factor: LossFactor = Field(0.0, title="Loss factor", description=STRUCTURAL_LOSS)
+    loss_factor: LossValue = Field(0.0, title="Loss factor", description=STRUCTURAL_LOSS)
     source: Text = Field("", title="Source", description=_SOURCE)
 
     @model_validator(mode="after")
@@ -216,7 +216,7 @@ class AnisotropicWords(Words):
 
 
 class NeoHookeanWords(Words):
-    """Nearly incompressible neo-Hookean solid with a constant loss factor."""
+    """Nearly incompressible neo-Hookean solid."""
 
     law: Literal["neo-hookean"] = Field(
         title="Law", description="Nearly incompressible neo-Hookean"
@@ -224,10 +224,7 @@ class NeoHookeanWords(Words):
     density: Density = Field(title="Density", description="Mass per undeformed volume")
     shear_modulus: Modulus = Field(title="Shear modulus", description="Shear modulus G")
     bulk_modulus: Modulus = Field(title="Bulk modulus", description="Bulk modulus K")
-    loss_factor: FilmLossFactor = Field(
-        title="Loss factor",
-        description="Loss factor eta of the complex shear modulus G (1 + i eta)",
-    )
+    loss_factor: FilmLossValue = Field(title="Loss factor", description=FILM_LOSS)
     source: Text = Field("", title="Source", description=_SOURCE)
 
     @model_validator(mode="after")
@@ -237,7 +234,7 @@ class NeoHookeanWords(Words):
 
 
 class MooneyRivlinWords(Words):
-    """Nearly incompressible Mooney-Rivlin solid with a constant loss factor."""
+    """Nearly incompressible Mooney-Rivlin solid."""
 
     law: Literal["mooney-rivlin"] = Field(
         title="Law", description="Nearly incompressible Mooney-Rivlin"
@@ -246,10 +243,7 @@ class MooneyRivlinWords(Words):
     c10: ModulusOrZero = Field(title="C10", description="Coefficient of the first invariant")
     c01: ModulusOrZero = Field(title="C01", description="Coefficient of the second invariant")
     bulk_modulus: Modulus = Field(title="Bulk modulus", description="Bulk modulus K")
-    loss_factor: FilmLossFactor = Field(
-        title="Loss factor",
-        description="Loss factor eta of the complex shear modulus G (1 + i eta)",
-    )
+    loss_factor: FilmLossValue = Field(title="Loss factor", description=FILM_LOSS)
     source: Text = Field("", title="Source", description=_SOURCE)
 
     @property

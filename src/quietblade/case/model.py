@@ -4,7 +4,7 @@
 import copy
 import hashlib
 import json
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from os import PathLike
 from pathlib import Path as FilePath
@@ -19,8 +19,9 @@ from quietblade.case.fields import Text, Words
 from quietblade.case.flow import FlowWords
 from quietblade.case.laminate import LaminateWords
 from quietblade.case.library import library_material
+from quietblade.case.loss import LossWords, loss_files
 from quietblade.case.materials import MaterialWords, SolidWords
-from quietblade.case.problems import InvalidCaseError
+from quietblade.case.problems import InvalidCaseError, Path, dotted
 from quietblade.case.source import Finding, Source, parse_source, read_source
 from quietblade.case.structure import LoadWords, PressureLoadWords, RootWords
 from quietblade.case.tables import (
@@ -165,6 +166,9 @@ class Case(Words):
         for number, limit in enumerate(self.limits):
             if limit.table is not None:
                 named[f"limits[{number}].table"] = limit.table
+        for part in self.parts:
+            for key, file in loss_files(self.loss(part)[1]):
+                named[f"{part}.loss_factor.{key}"] = file
         return {key: self.folder / name for key, name in named.items()}
 
     def plain(self) -> dict[str, Any]:
@@ -199,10 +203,27 @@ class Case(Words):
         KeyError
             The case has no such part.
         """
-        words = {"blade": self.blade, "film": self.film}[part]
-        if words is None:
-            raise KeyError(part)
-        return self.named_material(words.material)
+        return self.named_material(self._material_name(part))
+
+    @property
+    def parts(self) -> tuple[str, ...]:
+        """Parts that have a material."""
+        return ("blade",) if self.film is None else ("blade", "film")
+
+    def loss(self, part: str) -> tuple[Path, float | LossWords]:
+        """Loss factor of a part, behind its key; of a laminate without one that of its first ply.
+
+        Raises
+        ------
+        KeyError
+            The case has no such part.
+        """
+        name = self._material_name(part)
+        words = self.named_material(name)
+        if isinstance(words, LaminateWords) and words.loss_factor is None:
+            name = words.plies[0].material
+            words = self.named_material(name)
+        return ("materials", name, "loss_factor"), words.loss_factor or 0.0
 
     def named_material(self, name: str) -> SolidWords:
         """Material of a name, from the case or the library.
@@ -214,6 +235,12 @@ class Case(Words):
         """
         own = self.materials.get(name)
         return own if own is not None else library_material(name)
+
+    def _material_name(self, part: str) -> str:
+        words = {"blade": self.blade, "film": self.film}[part]
+        if words is None:
+            raise KeyError(part)
+        return words.material
 
     def _physics_of(self, words: SolidWords) -> dict[str, Any]:
         """Return what a material says, with the materials of its plies and without its source."""
@@ -234,10 +261,25 @@ class Case(Words):
             case = cls.model_validate(source.data, context={"si": source.si})
         except ValidationError as error:
             findings.extend(explain(error, source.data, cls))
+        else:
+            findings.extend(_loss_findings(case) if not findings else ())
         if findings:
             raise InvalidCaseError(map(source.problem, findings))
         case._source = source
         return case
+
+
+def _loss_findings(case: Case) -> Iterator[Finding]:
+    """Refuse a model of the loss where the whole tangent has one factor."""
+    if case.film is None or case.acoustics.loss != "paper":
+        return
+    path, loss = case.loss("film")
+    if isinstance(loss, LossWords):
+        yield Finding(
+            ("acoustics", "loss"),
+            f"gives the film's whole tangent one loss factor, and {dotted(path)} has a model",
+            'Use loss = "isochoric", or a number for the loss factor',
+        )
 
 
 def _rounded(value: Any) -> Any:

@@ -63,9 +63,16 @@ MOMENT_PER_ANGLE = Kind(
     "a moment per angle", "N*m/rad", "40 kN*m/rad", ("N*m/rad", "kN*m/rad"), 1e-9, 1e18
 )
 ACCELERATION = Kind("an acceleration", "m/s^2", "9.81 m/s^2", ("m/s^2",), 1e-9, 1e6)
+TIME = Kind("a time", "s", "0.2 ms", ("s", "ms", "µs"), 1e-18, 1e18)
+TEMPERATURE = Kind("a temperature", "K", "15 degC", ("degC", "K"), 1.0, 3e3)
+TEMPERATURE_STEP = Kind("a difference of temperatures", "K", "101.6 K", ("K",), 1e-6, 1e5)
+MOLAR_ENERGY = Kind("an energy per amount", "J/mol", "80 kJ/mol", ("kJ/mol", "J/mol"), 1e-3, 1e9)
 LEVEL = Kind("a difference of levels", "dB", "0.01 dB", ("dB",), 1e-9, 1e3)
 SOUND_LEVEL = Kind("a level", "dB", "120 dB", ("dB",), 0.0, 1e3)
 FRACTION = Kind("a fraction", "", "6 %", ("%",), 0.0, 1e3)
+
+_ICE_POINT = {"degC": 273.15, "°C": 273.15, "celsius": 273.15}
+"""Scales of temperature with a zero of their own, and where it is [K]."""
 
 _HUGE = 1e300  # an integer beyond has no float
 
@@ -74,7 +81,7 @@ _UNREADABLE = (AttributeError, ArithmeticError, AssertionError, LookupError, Typ
 
 _KINDS = (
     LENGTH, ANGLE, SPEED, ANGULAR_SPEED, FREQUENCY, PRESSURE, DENSITY, VISCOSITY, FRACTION, FORCE,
-    LINE_FORCE, MOMENT_PER_ANGLE, ACCELERATION, LEVEL,
+    LINE_FORCE, MOMENT_PER_ANGLE, ACCELERATION, LEVEL, TIME, TEMPERATURE, MOLAR_ENERGY,
 )  # fmt: skip
 
 
@@ -126,6 +133,8 @@ def read_quantity(value: Any, kind: Kind, *, bare: bool = False) -> float:
     if not unit:
         remedy = "Write it without quotes" if not kind.unit else f"Write {example}"
         raise UnitError(f"has no unit, and {kind.name} is needed", remedy)
+    if kind is TEMPERATURE and unit in _ICE_POINT:
+        return _finite(float(f"{number + _ICE_POINT[unit]:.15g}"), kind)
     factor, powers = _root_unit(unit, kind)
     wanted_factor, wanted = _root(kind.unit)
     if powers != wanted:

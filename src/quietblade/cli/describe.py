@@ -5,6 +5,8 @@ from dataclasses import asdict
 from math import degrees
 from typing import Any
 
+import numpy as np
+
 from quietblade.case import Case
 from quietblade.case.laminate import LaminateWords
 from quietblade.case.materials import (
@@ -15,6 +17,7 @@ from quietblade.case.materials import (
 )
 from quietblade.case.spans import ConstantSpan, FormulaSpan, SpanValue
 from quietblade.case.units import in_unit
+from quietblade.study.losses import Modulus
 from quietblade.study.preflight import Preflight
 
 Rows = list[tuple[str, str]]
@@ -27,6 +30,7 @@ def case_tables(case: Case, known: Preflight) -> list[tuple[str, Rows]]:
         ("Flow", _flow_rows(case, known)),
         ("Acoustics", _acoustics_rows(case, known)),
         ("Sound far away", _far_rows(case)),
+        *([("Complex moduli", _modulus_rows(case, known))] if known.moduli else []),
         ("Numbers", _number_rows(case, known)),
     ]
 
@@ -173,9 +177,30 @@ def case_data(case: Case, known: Preflight) -> dict[str, Any]:
             "elements_per_acoustic_wavelength": known.elements_per_acoustic_wavelength,
             "elements_per_bending_wavelength": known.elements_per_bending_wavelength,
             "surface_elements": known.surface_elements,
+            "moduli": [_modulus_data(case, modulus) for modulus in known.moduli],
         },
         "notices": [asdict(notice) for notice in known.notices],
     }
+
+
+def _modulus_data(case: Case, modulus: Modulus) -> dict[str, Any]:
+    band = np.array(case.acoustics.band)
+    g = modulus.at(band)
+    return {
+        "name": modulus.name,
+        "model": modulus.model,
+        "static_modulus_pa": _known(modulus.static),
+        "temperature_k": _known(modulus.temperature),
+        "shift": modulus.shift,
+        "frequency_hz": band.tolist(),
+        "storage_ratio": g.real.tolist(),
+        "loss_factor": (g.imag / g.real).tolist(),
+        "fit_error": None if modulus.fit is None else modulus.fit.error,
+    }
+
+
+def _known(value: float) -> float | None:
+    return value if np.isfinite(value) else None
 
 
 def _spanwise(words: SpanValue, unit: str, of: str = "") -> str:
@@ -205,7 +230,28 @@ def _solid(words: SolidWords) -> str:
         angle = degrees(words.ply_angle)
         return f"anisotropic, axis 1 at {angle:.4g} deg to the span, {density}"
     shear = f"G = {words.shear_modulus / 1e6:.4g} MPa"
-    return f"{words.law}, {shear}, loss factor {words.loss_factor:g}, {density}"
+    loss = words.loss_factor
+    damping = f"loss factor {loss:g}" if isinstance(loss, float) else "loss by a model (below)"
+    return f"{words.law}, {shear}, {damping}, {density}"
+
+
+def _modulus_rows(case: Case, known: Preflight) -> Rows:
+    low, high = case.acoustics.band
+    rows = []
+    for modulus in known.moduli:
+        g = modulus.at(np.array([low, high]))
+        storage, factor = g.real, g.imag / g.real
+        text = modulus.model
+        if np.isfinite(modulus.temperature):
+            text += f" at {modulus.temperature - 273.15:.4g} degC (a_T = {modulus.shift:.3g})"
+        text += (
+            f": storage modulus {storage[0]:.3g} to {storage[1]:.3g} times the static one, loss "
+            f"factor {factor[0]:.3g} to {factor[1]:.3g}, from {low:g} to {high:g} Hz"
+        )
+        if modulus.fit is not None:
+            text += f"; fit within {100 * modulus.fit.error:.2g} % of the points"
+        rows.append((modulus.name, text))
+    return rows
 
 
 def _mm(value: float) -> str:

@@ -21,7 +21,11 @@ from quietblade.results.summary import (
     MeshSummary,
     ModesSummary,
     ModeSummary,
+    ModulusSummary,
+    PeakSharesSummary,
     PerformanceSummary,
+    PowerPathsSummary,
+    PowerSharesSummary,
     RunSummary,
     SoundPowerSummary,
     StateFigures,
@@ -61,6 +65,10 @@ def summarise(result: Result) -> Summary:
         sound_power=_sound_power(result),
         far_field=far_field_summary(result),
         limits=tuple(limit_summaries(result)),
+        power_paths=PowerPathsSummary(
+            C0=_shares(configurations.get("C0")), C1=_shares(configurations.get("C1"))
+        ),
+        moduli=_moduli(result),
         balance=BalanceSummary(
             max_relative_residual=_largest(s.balance_residual for s in spectra),
             max_solver_residual=_largest(s.solver_residual for s in spectra),
@@ -209,6 +217,38 @@ def _campbell(diagram: CampbellDiagram) -> CampbellSummary:
             CrossingSummary(mode=mode, order=order, rotation_rad_s=speed, frequency_hz=frequency)
             for mode, order, speed, frequency in crossings
         ),
+    )
+
+
+def _shares(configuration: ConfigurationResult | None) -> PowerSharesSummary:
+    if configuration is None:
+        return PowerSharesSummary(mean={}, peaks=())
+    paths = configuration.dissipation
+
+    def named(shares: FloatArray) -> dict[str, float]:
+        return dict(zip(paths.sink, shares.tolist(), strict=True))
+
+    return PowerSharesSummary(
+        mean=named(paths.mean_share),
+        peaks=tuple(
+            PeakSharesSummary(frequency_hz=float(frequency), share=named(shares))
+            for frequency, shares in zip(paths.peak_frequency, paths.peak_share.T, strict=True)
+        ),
+    )
+
+
+def _moduli(result: Result) -> tuple[ModulusSummary, ...]:
+    table = result.moduli
+    return tuple(
+        ModulusSummary(
+            name=name,
+            model=table.model[i],
+            temperature_k=float(table.temperature[i]),
+            storage_ratio=tuple(table.band_ratio[i].real.tolist()),
+            loss_factor=tuple((table.band_ratio[i].imag / table.band_ratio[i].real).tolist()),
+            fit_error=float(table.fit_error[i]),
+        )
+        for i, name in enumerate(table.name)
     )
 
 

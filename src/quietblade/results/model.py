@@ -284,6 +284,18 @@ class Spectrum(Record):
 
 
 @dataclass(frozen=True, eq=False)
+class Dissipation(Record):
+    """Where the injected power goes: each lossy region, and the water."""
+
+    group: ClassVar[str] = "C*/dissipation"
+    sink: tuple[str, ...]
+    power: FloatArray
+    mean_share: FloatArray
+    peak_frequency: FloatArray
+    peak_share: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
 class SweepRecord(Record):
     """How the spectrum was made."""
 
@@ -399,6 +411,7 @@ class ConfigurationResult(Record):
     participation: Participation
     dry_modes: DryModes
     spectrum: Spectrum
+    dissipation: Dissipation
     sweep: SweepRecord
     peaks: PeakTable
     bands: BandTable
@@ -417,6 +430,26 @@ class ConfigurationResult(Record):
         """Wave number times outer radius, at the frequencies of the spectrum."""
         k = 2.0 * np.pi * self.spectrum.frequency / self.sound_speed
         return np.asarray(k * self.outer_radius, dtype=np.float64)
+
+
+@dataclass(frozen=True, eq=False)
+class ModulusTable(Record):
+    """Complex moduli of the regions whose loss is more than a number."""
+
+    group: ClassVar[str] = "moduli"
+    name: tuple[str, ...]
+    model: tuple[str, ...]
+    static: FloatArray
+    temperature: FloatArray
+    shift: FloatArray
+    fit_error: FloatArray
+    band: FloatArray
+    band_ratio: ComplexArray
+    frequency: FloatArray
+    ratio: ComplexArray
+    measured_modulus: IntArray
+    measured_frequency: FloatArray
+    measured_ratio: ComplexArray
 
 
 # --- mesh and run -----------------------------------------------------------------------------
@@ -564,6 +597,7 @@ class Result(Record):
     configurations : mapping
         `ConfigurationResult` by name, C0 and C1 or those that were computed, with the
         frequencies of the spectra in common.
+    moduli : ModulusTable
     mesh : MeshResult
     run : RunRecord
     campbell : CampbellDiagram
@@ -574,6 +608,7 @@ class Result(Record):
     blade: str
     static: StaticResult
     configurations: Mapping[str, ConfigurationResult]
+    moduli: ModulusTable
     mesh: MeshResult
     run: RunRecord
     campbell: CampbellDiagram = field(default_factory=CampbellDiagram.none)

@@ -243,6 +243,40 @@ class LimitSummary(_Part):
     exceeded: bool | None = Field(description="null if the limit does not touch the band")
 
 
+class PeakSharesSummary(_Part):
+    """Where the power goes at one peak of the sound power."""
+
+    frequency_hz: Number = _of("C*/dissipation/peak_frequency")
+    share: dict[str, Number] = _of("C*/dissipation/peak_share", "by region, and of the water")
+
+
+class PowerSharesSummary(_Part):
+    """Where the power goes in one configuration."""
+
+    mean: dict[str, Number] = _of("C*/dissipation/mean_share", "by region, and of the water")
+    peaks: tuple[PeakSharesSummary, ...] = Field(description="the same at each peak")
+
+
+class PowerPathsSummary(_Part):
+    """Where the power of the excitation goes."""
+
+    C0: PowerSharesSummary
+    C1: PowerSharesSummary
+
+
+class ModulusSummary(_Part):
+    """A complex modulus that is more than a constant loss factor."""
+
+    name: str = _of("moduli/name")
+    model: str = _of("moduli/model")
+    temperature_k: Number = _of("moduli/temperature")
+    storage_ratio: tuple[Number, Number] = Field(
+        description="storage modulus over the static one, at the ends of the band"
+    )
+    loss_factor: tuple[Number, Number] = Field(description="loss factor there")
+    fit_error: Number = _of("moduli/fit_error")
+
+
 class BalanceSummary(_Part):
     """How well the energy balances, over both configurations."""
 
@@ -305,6 +339,10 @@ class Summary(_Part):
     sound_power: SoundPowerSummary
     far_field: FarFieldSummary
     limits: tuple[LimitSummary, ...] = Field(description="limits of the case by configuration")
+    power_paths: PowerPathsSummary
+    moduli: tuple[ModulusSummary, ...] = Field(
+        description="complex moduli that are more than a constant loss factor"
+    )
     balance: BalanceSummary
     mesh: MeshSummary
     unknowns: int = Field(description="free unknowns of step 2")

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """The headline figures as small tables, for the screen, for ``summary.txt`` and for the report."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Mapping
 
 from quietblade.results.far_tables import far_field_tables
 from quietblade.results.summary import ModeSummary, Summary
@@ -19,6 +19,8 @@ def summary_tables(summary: Summary) -> tuple[Table, ...]:
         _kinds(summary),
         _campbell(summary),
         _crossings(summary),
+        _power_paths(summary),
+        _moduli(summary),
         _claims(summary),
         _checks(summary),
         _run(summary),
@@ -218,6 +220,43 @@ def _crossings(summary: Summary) -> Table:
         rows = (("none", "", "", ""),)
     heads = ("Mode", "order x blades", "shaft", "frequency")
     return Table("Crossings of modes and blade rate", heads, rows)
+
+
+def _power_paths(summary: Summary) -> Table:
+    paths = {"C0": summary.power_paths.C0, "C1": summary.power_paths.C1}
+    sinks = tuple(dict.fromkeys(sink for shares in paths.values() for sink in shares.mean))
+    rows = []
+    for name, shares in paths.items():
+        if shares.mean:
+            rows.append((f"{name}, mean over the band", *_percents(shares.mean, sinks)))
+        rows += [
+            (f"{name}, peak at {number(peak.frequency_hz, '.2f')} Hz",
+             *_percents(peak.share, sinks))
+            for peak in shares.peaks
+        ]  # fmt: skip
+    note = "shares of the injected power, in per cent; water: radiated through the sphere"
+    return Table("Where the power goes", ("", *sinks), tuple(rows), note)
+
+
+def _percents(shares: Mapping[str, float | None], sinks: Iterable[str]) -> Iterator[str]:
+    return (number(_times(100.0, shares.get(sink)), ".3g") for sink in sinks)
+
+
+def _moduli(summary: Summary) -> Table:
+    rows = tuple(
+        (
+            modulus.name,
+            modulus.model,
+            "-" if modulus.temperature_k is None else f"{modulus.temperature_k - 273.15:.1f} degC",
+            " to ".join(number(value, ".3g") for value in modulus.storage_ratio),
+            " to ".join(number(value, ".3g") for value in modulus.loss_factor),
+            number(_times(100.0, modulus.fit_error), ".2g"),
+        )
+        for modulus in summary.moduli
+    )
+    heads = ("Modulus", "Model", "Temperature", "Storage / static", "Loss factor", "Fit error [%]")
+    note = "from the low to the high end of the band; static: that of the steady load"
+    return Table("Complex moduli", heads, rows, note)
 
 
 def _claims(summary: Summary) -> Table:

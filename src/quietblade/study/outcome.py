@@ -29,6 +29,7 @@ from quietblade.propulsion.loads_assembly import AppliedLoads
 from quietblade.propulsion.stress import StressReport
 from quietblade.results import model
 from quietblade.study import far_outcome
+from quietblade.study.dissipation import dissipation
 from quietblade.study.mode_tables import ModeTables
 from quietblade.study.sound import Sound
 from quietblade.study.statics import Statics
@@ -253,6 +254,7 @@ def configuration_result(
         participation=tables.participation,
         dry_modes=tables.dry,
         spectrum=_spectrum(case, vibration, sound),
+        dissipation=dissipation(vibration, sound),
         sweep=_sweep(case, sound),
         peaks=_peaks(sound),
         bands=far_outcome.band_table(case, sound),

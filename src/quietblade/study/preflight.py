@@ -14,6 +14,7 @@ from quietblade.geometry import Blade
 from quietblade.study import solids, translate
 from quietblade.study.limits import far_field_findings, limit_notices, limits
 from quietblade.study.loads import steady_loads
+from quietblade.study.losses import Modulus, moduli, moduli_notices
 from quietblade.typing import FloatArray
 
 _MOST_FACES = 400_000
@@ -47,6 +48,8 @@ class Preflight:
         Wavelength over the largest edge length of the elements.
     surface_elements : int
         Estimated number of triangles on the blade.
+    moduli : tuple of Modulus
+        Complex moduli of the parts whose loss is more than a number.
     notices : tuple of Notice
     """
 
@@ -62,6 +65,7 @@ class Preflight:
     elements_per_acoustic_wavelength: float
     elements_per_bending_wavelength: float
     surface_elements: int
+    moduli: tuple[Modulus, ...]
     notices: tuple[Notice, ...]
 
 
@@ -71,13 +75,14 @@ def preflight(case: Case) -> Preflight:
     Raises
     ------
     InvalidCaseError
-        The blade, its film, a load, a limit or a point is impossible, the sphere does not enclose
-        the blade with the stated gap, or the mesh size is absurd; each with file, line, key, value
-        and remedy.
+        The blade, its film, a load, a limit, a point or a model of the loss is impossible, the
+        sphere does not enclose the blade with the stated gap, or the mesh size is absurd; each
+        with file, line, key, value and remedy.
     """
     blade = translate.build_blade(case)
     steady_loads(case, blade)
     held = limits(case)
+    complex_moduli = moduli(case)
     centre, radius = translate.sphere(case)
     clearance, outermost = _clearance(blade, centre, radius)
     faces = _surface_elements(blade, case.mesh.size)
@@ -109,11 +114,13 @@ def preflight(case: Case) -> Preflight:
         elements_per_acoustic_wavelength=per_acoustic,
         elements_per_bending_wavelength=per_bending,
         surface_elements=faces,
+        moduli=complex_moduli,
         notices=(
             *_radiation_notices(case, float(kr[0])),
             *_mesh_notices(case, per_bending, per_acoustic),
             *_material_notices(case),
             *limit_notices(case, held),
+            *moduli_notices(case, complex_moduli),
         ),
     )
 

@@ -17,7 +17,7 @@ from quietblade.results import mode_records as records
 from quietblade.results.files import ResultError
 from quietblade.results.model import Result
 from quietblade.results.store import RunFolder
-from quietblade.study import outcome, translate
+from quietblade.study import losses, outcome, translate
 from quietblade.study.campbell import solve_campbell
 from quietblade.study.clock import Clock
 from quietblade.study.fields import write_static_fields, write_vibration_fields
@@ -118,6 +118,7 @@ def run_case(case: Case, folder: RunFolder, progress: Progress = silent) -> Resu
             name: outcome.configuration_result(case, vibration, sounds[name], tables[name])
             for name, vibration in vibrations.items()
         },
+        moduli=losses.modulus_table(facts.moduli, case.acoustics.band),
         mesh=outcome.mesh_result(mesh, next(iter(vibrations.values()))),
         run=outcome.run_record(
             case.text,

@@ -17,6 +17,7 @@ from quietblade.case.materials import (
     MooneyRivlinWords,
     NeoHookeanWords,
     OrthotropicWords,
+    SolidWords,
 )
 from quietblade.errors import MaterialError, Notice
 from quietblade.geometry import Blade
@@ -78,7 +79,13 @@ def build_laminate(case: Case, name: str, words: LaminateWords) -> "Laminate":
     from quietblade import materials
 
     plies = tuple(_ply(case, ply, words.repeat) for ply in words.plies) * words.repeat
-    return materials.Laminate(name, plies, words.drape, words.loss_factor)
+    own = None if words.loss_factor is None else constant_loss(words)
+    return materials.Laminate(name, plies, words.drape, own)
+
+
+def constant_loss(words: SolidWords) -> float:
+    """Loss factor of a material in its constant part: a model comes on top (`study.losses`)."""
+    return words.loss_factor if isinstance(words.loss_factor, float) else 0.0
 
 
 def blade_plies(case: Case, blade: Blade, basis: "NodalBasis") -> "Mapping[str, Plies]":
@@ -164,11 +171,11 @@ def _material(case: Case, part: str, name: str, blade: Blade, basis: "NodalBasis
             return _isotropic(name, words)
         case MooneyRivlinWords():
             return materials.MooneyRivlin(
-                name, words.density, words.c10, words.c01, words.bulk_modulus, words.loss_factor
+                name, words.density, words.c10, words.c01, words.bulk_modulus, constant_loss(words)
             )
         case NeoHookeanWords():
             return materials.NeoHookean(
-                name, words.density, words.shear_modulus, words.bulk_modulus, words.loss_factor
+                name, words.density, words.shear_modulus, words.bulk_modulus, constant_loss(words)
             )
         case LaminateWords():
             return _draped(build_laminate(case, name, words), words.model, part, blade, basis)
@@ -176,7 +183,7 @@ def _material(case: Case, part: str, name: str, blade: Blade, basis: "NodalBasis
     if isinstance(words, OrthotropicWords):
         return _orthotropic(name, words).oriented(axes)
     return materials.AnisotropicSVK(
-        name, words.density, np.array(words.stiffness), axes, words.loss_factor
+        name, words.density, np.array(words.stiffness), axes, constant_loss(words)
     )
 
 
@@ -195,7 +202,7 @@ def _isotropic(name: str, words: IsotropicWords) -> "IsotropicSVK":
     from quietblade import materials
 
     return materials.IsotropicSVK(
-        name, words.density, words.E, words.nu, words.loss_factor, words.yield_strength
+        name, words.density, words.E, words.nu, constant_loss(words), words.yield_strength
     )
 
 
@@ -209,7 +216,7 @@ def _orthotropic(name: str, words: OrthotropicWords) -> "OrthotropicSVK":
         e1=words.E1, e2=words.E2, e3=words.E3,
         g12=words.G12, g23=words.G23, g13=words.G13,
         nu12=words.ratio(1, 2), nu23=words.ratio(2, 3), nu13=words.ratio(1, 3),
-        loss_factor=words.loss_factor,
+        loss_factor=constant_loss(words),
         strength=strength,
     )  # fmt: skip
 

@@ -14,7 +14,7 @@ from quietblade.study.vibration import Vibration, symmetric_solver
 from quietblade.typing import ComplexArray, FloatArray, IntArray, Progress
 from quietblade.vibroacoustics.multipoles import Multipoles
 from quietblade.vibroacoustics.peaks import Peaks, find_peaks, peaks_on_grid
-from quietblade.vibroacoustics.power import PowerBudget, power_budget
+from quietblade.vibroacoustics.power import PowerBudget, dissipated_by_region, power_budget
 from quietblade.vibroacoustics.radiation_check import radiation_notices
 from quietblade.vibroacoustics.reduced import Certificate
 from quietblade.vibroacoustics.sweep import solve_response
@@ -32,6 +32,8 @@ class Sound:
         [Hz]
     budget : PowerBudget
         Injected, radiated and dissipated power [W].
+    lost : mapping of str to (f,) float array
+        Dissipated power by lossy part [W].
     work : (f,) complex array
         b^T x [J], for the mobility.
     multipoles : Multipoles
@@ -59,6 +61,7 @@ class Sound:
     name: str
     frequency: FloatArray
     budget: PowerBudget
+    lost: Mapping[str, FloatArray]
     work: ComplexArray
     multipoles: Multipoles
     residual: FloatArray
@@ -113,6 +116,7 @@ def _direct(case: Case, vibration: Vibration, frequency: FloatArray, progress: P
         name=vibration.name,
         frequency=frequency,
         budget=budget,
+        lost=dissipated_by_region(operators, response.omega, response.solution),
         work=np.asarray(response.solution @ vibration.load),
         multipoles=waves,
         residual=response.residual,
@@ -159,6 +163,7 @@ def _reduced(case: Case, vibration: Vibration, frequency: FloatArray, progress: 
         name=vibration.name,
         frequency=frequency,
         budget=model.budget(omega),
+        lost=dissipated_by_region(model.reduced_operators, omega, y),
         work=model.work(omega),
         multipoles=waves,
         residual=np.full(frequency.shape, np.nan),

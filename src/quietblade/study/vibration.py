@@ -17,7 +17,7 @@ from quietblade.mesh.motion import MeshMotion
 from quietblade.mesh.surface import SurfaceQuadrature
 from quietblade.propulsion.structure import Structure, StructureState
 from quietblade.propulsion.tangent import Tangent, compute_tangent
-from quietblade.study import translate
+from quietblade.study import losses, translate
 from quietblade.study.frames import SectionFrames
 from quietblade.study.statics import Statics
 from quietblade.study.stream import with_stream
@@ -112,7 +112,7 @@ def linear_problem(
         operators = build_operators(
             mesh.fem,
             stiffness=tangent.stiffness(case.acoustics.tangent),
-            loss=tangent.losses(case.acoustics.loss),
+            loss=losses.loss_parts(case, losses.moduli(case), structure, state, tangent),
             mass=tangent.mass,
             water=translate.water(case),
             radius=mesh.radius,
@@ -154,7 +154,9 @@ def solve_vibration(
     exact = symmetric_solver(case, precision="double")
     low, high = case.acoustics.band
     load = operators.right_hand_side(force)
-    modes = wet_modes(operators, ABOVE_BAND * high, solver=exact, progress=progress)
+    modes = wet_modes(
+        operators, ABOVE_BAND * high, moduli_at=0.5 * (low + high), solver=exact, progress=progress
+    )
     progress(name, 0.5, f"{len(modes.frequency)} wet modes")
     sweep = None
     if case.acoustics.sweep == "reduced":

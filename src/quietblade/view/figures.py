@@ -12,7 +12,7 @@ from quietblade.results.files import replacing
 from quietblade.results.model import Result
 from quietblade.results.store import RunFolder
 from quietblade.typing import AnyArray, Progress, silent
-from quietblade.view import bands, directivity, far_spectra, scenes, sections, spectra
+from quietblade.view import bands, directivity, far_spectra, losses, scenes, sections, spectra
 from quietblade.view.campbell import draw_campbell
 from quietblade.view.style import DPI
 
@@ -91,6 +91,9 @@ def _drawings(folder: RunFolder, result: Result) -> Mapping[str, Drawing]:
     first = next(iter(result.configurations))
     drawings["sound-power"] = lambda: spectra.draw_sound_power(result, pictures(first))
     drawings["power-paths"] = lambda: spectra.draw_power_paths(result)
+    drawings["power-shares"] = lambda: losses.draw_power_shares(result)
+    if result.moduli.name:
+        drawings["moduli"] = lambda: losses.draw_moduli(result)
     return drawings | _far_field(result)
 
 

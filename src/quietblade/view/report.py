@@ -69,6 +69,8 @@ _CAPTIONS = {
     "radiation-efficiency": "Radiated power over that of a plane wave with the same motion.",
     "power-paths": "Where the injected power goes; the multipoles do not depend on the waves that "
     "the radiation condition reflects.",
+    "power-shares": "Where the injected power goes, in shares; dotted: peaks of the sound power.",
+    "moduli": "Complex moduli of the materials over frequency.",
     "mode-shapes-C0": "Wet modes at rest.",
     "mode-shapes-C1": "Wet modes under load.",
     "campbell": "Wet modes under load over the speed of the shaft, with the blade rate's multiples "
