@@ -20,6 +20,7 @@ from quietblade.case import Case
 from quietblade.case.fields import Words
 from quietblade.case.laminate import PlyWords
 from quietblade.case.library import NAMES, NOTE_OF, SOURCE_OF, library_material
+from quietblade.case.loss import LOSS_MODELS, SHIFTS, PrestrainWords
 from quietblade.case.materials import LAWS
 from quietblade.case.structure import LOADS
 
@@ -67,7 +68,7 @@ def default(value: object) -> str:
         return "-"
     plain = value.plain() if hasattr(value, "plain") else value
     if isinstance(plain, tuple):
-        return ", ".join(map(str, plain))
+        return ", ".join(map(str, plain)) or "-"
     if isinstance(plain, bool):
         return str(plain).lower()
     return f"{plain:g}" if isinstance(plain, float) else str(plain)
@@ -132,6 +133,11 @@ def keys() -> Iterator[str]:
             for law, model in LAWS.items():
                 yield kind(f'`[materials.NAME]` with `law = "{law}"`', model)
             yield kind("A ply, in the list `plies` of a laminate", PlyWords)
+            for word, model in LOSS_MODELS.models.items():
+                yield kind(f'A table `loss_factor` with `model = "{word}"`', model)
+            for word, model in SHIFTS.models.items():
+                yield kind(f'A table `shift` of it with `law = "{word}"`', model)
+            yield kind("An entry of the list `prestrain` of it", PrestrainWords)
         elif name == "loads":
             for word, model in LOADS.items():
                 yield kind(f'`[[loads]]` with `kind = "{word}"`', model)

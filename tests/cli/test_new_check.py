@@ -5,6 +5,7 @@ import json
 import os
 import subprocess
 import sys
+from math import pi
 from pathlib import Path
 
 import pytest
@@ -199,3 +200,28 @@ def test_exit_codes_of_errors(capsys: pytest.CaptureFixture[str]) -> None:
     assert show_error(ConvergenceError("no solution")) == ExitCode.FAILED
     assert [int(code) for code in ExitCode] == [0, 1, 2, 3]
     assert "error inverted" in capsys.readouterr().err
+
+
+def test_check_tells_the_moduli_at_the_ends_of_the_band(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    model = (
+        'loss_factor = { model = "fractional-zener", stiffening = 12.0, '
+        'relaxation_time = "0.2 ms", exponent = 0.7, temperature = "10 degC", '
+        'shift = { law = "wlf", c1 = 8.86, c2 = "101.6 K", reference = "20 degC" } }'
+    )
+    text = preset_text("paper-composite").replace("loss_factor = 0.21", model)
+    (tmp_path / "blade.toml").write_text(text)
+    assert execute(["check", "blade.toml"]) == ExitCode.DONE
+    shown = " ".join(capsys.readouterr().out.split())
+    assert "fractional-zener at 10 degC (a_T = 9.27): storage modulus 6.9 to 8.8" in shown
+    assert "from 100 to 220 Hz" in shown
+    assert execute(["check", "blade.toml", "--json"]) == ExitCode.DONE
+    (film,) = json.loads(capsys.readouterr().out)["derived"]["moduli"]
+    assert film["frequency_hz"] == [100.0, 220.0]
+    shift = 10.0 ** (8.86 * 10.0 / 91.6)
+    z = [(2j * pi * f * shift * 2e-4) ** 0.7 for f in (100.0, 220.0)]
+    g = [(1.0 + 12.0 * x) / (1.0 + x) for x in z]
+    assert film["loss_factor"] == pytest.approx([x.imag / x.real for x in g])
+    assert film["storage_ratio"] == pytest.approx([x.real for x in g])
+    assert film["fit_error"] is None

@@ -191,3 +191,32 @@ def test_modes_tell_their_kind_loss_and_dry_partner() -> None:
     (mode, *_) = summarise(make_result("composite")).modes.C1
     assert mode.loss_factor == pytest.approx(sum(mode.loss_by_part.values()))
     assert mode.dry_frequency_hz == pytest.approx(2.5 * mode.frequency_hz)
+
+
+def test_where_the_power_goes_is_told_for_the_band_and_each_peak() -> None:
+    result = make_result()
+    summary = summarise(result)
+    shares = summary.power_paths.C0
+    assert list(shares.mean) == ["blade", "film", "water"]
+    assert sum(shares.mean.values()) == pytest.approx(1.0)
+    assert len(shares.peaks) == len(result.configurations["C0"].peaks.frequency)
+    assert sum(shares.peaks[0].share.values()) == pytest.approx(1.0)
+    text = as_text("run", summary_tables(summary))
+    assert "Where the power goes" in text
+    assert "C1, mean over the band" in text
+    (film, blade) = summary.moduli
+    assert (film.name, film.model, blade.fit_error) == ("film", "table", None)
+    assert film.temperature_k == 283.15
+    assert "10.0 degC" in text
+
+
+def test_without_models_there_is_no_table_of_moduli() -> None:
+    result = make_result()
+    table = result.moduli
+    empty = {
+        name: getattr(table, name)[:0]
+        for name in table.stored()
+        if name not in ("band", "frequency")
+    }
+    bare = replace(result, moduli=replace(table, **empty))
+    assert "Complex moduli" not in as_text("run", summary_tables(summarise(bare)))

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from quietblade.results.model import path, state, without_state
-from quietblade.view import sections, spectra
+from quietblade.view import losses, sections, spectra
 from quietblade.view.campbell import draw_campbell
 from quietblade.view.style import CONFIGURATION, SERIES, STATE
 from tests.results.synthetic import make_result
@@ -28,6 +28,8 @@ FIGURES = {
     "power at rest": lambda: spectra.draw_sound_power_at_rest([ALUMINIUM, COMPOSITE]),
     "campbell": lambda: draw_campbell(ALUMINIUM),
     "paths": lambda: spectra.draw_power_paths(COMPOSITE),
+    "shares": lambda: losses.draw_power_shares(COMPOSITE),
+    "moduli": lambda: losses.draw_moduli(COMPOSITE),
 }
 
 
@@ -169,3 +171,30 @@ def test_the_users_own_settings_neither_matter_nor_change() -> None:
         axes = first_axes(sections.draw_blade_angle([COMPOSITE]))
         assert axes.xaxis.label.get_size() == 8.5
         assert mpl.rcParams["font.size"] == 33.0
+
+
+def test_shares_of_the_power_fill_the_axis_and_are_named() -> None:
+    figure = FIGURES["shares"]()
+    assert {"blade", "film", "water"} <= set(texts(figure).split("\n"))
+    areas = first_axes(figure).collections
+    top = max(float(np.max(area.get_paths()[0].vertices[:, 1])) for area in areas)
+    assert top == pytest.approx(100.0)
+
+
+def test_moduli_show_measured_points_temperature_and_fit() -> None:
+    figure = FIGURES["moduli"]()
+    written = texts(figure)
+    assert "film: table, 10.0 °C, fit within 5 %" in written
+    assert "over static [1]" in written  # one of them has no static modulus of its own
+    circles = [line for line in first_axes(figure).lines if line.get_marker() == "o"]
+    assert [len(line.get_xdata()) for line in circles] == [15, 0]
+    table = COMPOSITE.moduli
+    film = replace(
+        table, name=("film",), model=("table",), static=table.static[:1], shift=table.shift[:1],
+        temperature=table.temperature[:1], fit_error=table.fit_error[:1], ratio=table.ratio[:1],
+        band_ratio=table.band_ratio[:1],
+    )  # fmt: skip
+    figure = losses.draw_moduli(replace(COMPOSITE, moduli=film))
+    assert "Storage modulus [MPa]" in texts(figure)
+    line = first_axes(figure).lines[0]
+    np.testing.assert_allclose(line.get_ydata(), 1.5 * film.ratio[0].real)

@@ -152,6 +152,7 @@ def _ascending(entries: tuple[PrestrainWords, ...]) -> tuple[PrestrainWords, ...
 class LossWords(Words):
     """What all models have in common."""
 
+    model: str = Field(title="Model", description="Name of the model")
     prestrain: Annotated[
         tuple[PrestrainWords, ...], AfterValidator(_ascending), entries_from(0)
     ] = Field(

@@ -208,6 +208,7 @@ def loss_parts(
     parts: dict[str, csr_matrix | Lossy] = dict(tangent.losses(case.acoustics.loss))
     for region in dict.fromkeys(modulus.region for modulus in found):
         own = [modulus for modulus in found if modulus.region == region]
+        parts.pop(region, None)  # a model takes the place of a number
         if len(own) == 1:
             film = region in tangent.film_regions
             whole = tangent.film_isochoric_material if film else tangent.region_material[region]

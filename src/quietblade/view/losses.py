@@ -33,6 +33,7 @@ _SINKS = {
     "stream": (GREEN, "\\\\"),
 }
 """Colour and hatching of each part, told apart in print without colours too."""
+_LONG = 60.0  # ratio of the ends of a logarithmic axis on which few numbers have room
 _OTHERS = ((PURPLE, "xx"), (BLUE, "++"))
 
 
@@ -106,8 +107,9 @@ def draw_moduli(result: Result) -> Figure:
 
 
 def _plain_numbers(axis: Axis) -> None:
-    """Write 1, 2, 5, 10 on a logarithmic axis, for spans of a decade or two."""
-    axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    """Write 1, 2, 5, 10 on a logarithmic axis, and 1, 10, 100 on a long one."""
+    low, high = axis.get_view_interval()
+    axis.set_major_locator(LogLocator(subs=(1.0,) if high > _LONG * low else (1.0, 2.0, 5.0)))
     axis.set_major_formatter(StrMethodFormatter("{x:g}"))
     axis.set_minor_formatter(NullFormatter())
 
