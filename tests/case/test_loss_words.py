@@ -6,10 +6,13 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from quietblade.case import Case, InvalidCaseError
 from quietblade.case.loss import ArrheniusWords, ModulusTableWords, WlfWords, ZenerWords
 from quietblade.case.presets import preset_text
+from quietblade.study.losses import moduli
 
 ZENER = {
     "model": "fractional-zener", "stiffening": 12.0, "relaxation_time": "0.2 ms", "exponent": 0.7,
@@ -164,3 +167,38 @@ def test_one_loss_factor_on_the_whole_tangent_has_no_model() -> None:
     assert "acoustics.loss" in message
     assert 'Use loss = "isochoric"' in message
     assert case(ZENER, "woven-carbon", acoustics__loss="paper").acoustics.loss == "paper"
+
+
+WHOLE = ZENER | {
+    "temperature": "10 degC",
+    "shift": WLF,
+    "prestrain": [{"shear": 0.1, "factor": 2.0, "loss_factor": TABLE}],
+}
+PLACES = [
+    ("model",), ("stiffening",), ("relaxation_time",), ("exponent",), ("temperature",), ("shift",),
+    ("shift", "law"), ("shift", "c2"), ("prestrain",), ("prestrain", 0), ("prestrain", 0, "shear"),
+    ("prestrain", 0, "loss_factor"), ("prestrain", 0, "loss_factor", "file"), ("odd",),
+]  # fmt: skip
+VALUES = st.one_of(
+    st.none(), st.booleans(), st.integers(), st.floats(), st.text(max_size=5),
+    st.sampled_from(["table", "maxwell", "1 s", "1e999 degC", "5 K", "\x00", "9" * 400]),
+    st.just([]), st.just({}), st.just([{}]), st.just({"model": "table"}), st.just([ZENER]),
+)  # fmt: skip
+
+
+@settings(max_examples=60, deadline=None)
+@given(place=st.sampled_from(PLACES), value=VALUES)
+def test_whatever_stands_in_a_model_it_is_a_case_or_messages(place, value) -> None:
+    loss: Any = json.loads(json.dumps(WHOLE))
+    table = loss
+    for part in place[:-1]:
+        table = table[part]
+    table[place[-1]] = value
+    try:
+        said = case(loss)
+        said.content_key()
+        moduli(said)
+    except InvalidCaseError as error:
+        for problem in error.problems:
+            assert problem.message
+            assert problem.key.startswith("materials.polymer.loss_factor")

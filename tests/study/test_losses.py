@@ -224,6 +224,12 @@ def test_other_files_that_cannot_be(said, tmp_path: Path) -> None:
     hot = {"temperature": "-90 degC", "shift": WLF}
     with pytest.raises(InvalidCaseError, match="the WLF shift ends at"):
         preflight(said(ZENER | hot))
+    for law in (
+        WLF | {"c1": 900.0},
+        {"law": "arrhenius", "energy": "9 MJ/mol", "reference": "0 degC"},
+    ):
+        with pytest.raises(InvalidCaseError, match=r"loss_factor\.temperature.*shifts"):
+            preflight(said(ZENER | {"temperature": "-80 degC", "shift": law}))
 
 
 def test_columns_in_any_order_and_unit(tmp_path: Path) -> None:

@@ -18,6 +18,7 @@ from quietblade.case.loss import (
     LossWords,
     MaxwellWords,
     ModulusTableWords,
+    ShiftWords,
     WlfWords,
     ZenerWords,
 )
@@ -43,6 +44,7 @@ CONTRADICTION = 0.1
 """Relative difference of a fit's modulus at rest from the case's beyond which a notice is given."""
 
 _SAMPLES = 201
+_MOST_SHIFT = 1e30
 
 _AT_SHEAR = " at shear "
 
@@ -299,35 +301,33 @@ def _moduli(case: Case, part: str, path: Path, words: LossWords, key: str) -> li
             raise TypeError(f"no model {words!r}")
     if words.temperature is None or words.shift is None:
         return bare
-    shift = _shift(words)
-    try:
-        factor = shift.factor(words.temperature)
-    except MaterialError as error:
-        raise case.invalid(
-            Finding((*path, "temperature"), str(error), "Check temperature and shift")
-        ) from error
-    if not 0.0 < factor < np.inf:
-        raise case.invalid(
-            Finding(
-                (*path, "temperature"),
-                f"shifts the frequency by the factor {factor:g}",
-                "Check temperature and shift",
-            )
-        )
+    factor = _shift_factor(case, path, words.shift, words.temperature)
     return [
         replace(m, ratio=Shifted(m.ratio, factor), temperature=words.temperature, shift=factor)
         for m in bare
     ]
 
 
-def _shift(words: ZenerWords | MaxwellWords | ModulusTableWords) -> "Shift":
+def _shift_factor(case: Case, path: Path, words: ShiftWords, temperature: float) -> float:
+    """Factor a_T of a temperature [K]."""
     from quietblade.materials.viscoelastic import ArrheniusShift, WlfShift
 
-    shift = words.shift
-    assert shift is not None
-    if isinstance(shift, WlfWords):
-        return WlfShift(shift.c1, shift.c2, shift.reference)
-    return ArrheniusShift(shift.energy, shift.reference)
+    shift: Shift
+    if isinstance(words, WlfWords):
+        shift = WlfShift(words.c1, words.c2, words.reference)
+    else:
+        shift = ArrheniusShift(words.energy, words.reference)
+    try:
+        with np.errstate(over="ignore"):
+            factor = shift.factor(temperature)
+    except (MaterialError, OverflowError) as error:
+        fault = str(error) if isinstance(error, MaterialError) else "shifts beyond all frequencies"
+    else:
+        if 1.0 / _MOST_SHIFT < factor < _MOST_SHIFT:
+            return factor
+        fault = f"shifts the frequency by the factor {factor:.3g}"
+    finding = Finding((*path, "temperature"), fault, "Check temperature and shift")
+    raise case.invalid(finding)
 
 
 def _fitted(
