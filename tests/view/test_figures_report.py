@@ -22,9 +22,8 @@ NAMES = {
     "mesh", "deformed", "mid-section-normalised", "mid-section", "blade-angle",
     "lift-coefficient", "convergence", "mode-shapes-C0", "mode-shapes-C1", "sound-power",
     "power-paths", "power-shares", "moduli", "cavitation", "stress", "source-level", "bands",
-    "directivity", "directivity-xy", "directivity-xz", "directivity-yz",
-    "multipoles", "radiation-efficiency",
-    "campbell",
+    "directivity", "directivity-xy", "directivity-xz", "directivity-yz", "multipoles",
+    "radiation-efficiency", "campbell",
 }  # fmt: skip
 
 
