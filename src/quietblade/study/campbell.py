@@ -133,6 +133,7 @@ def _at_speed(
     modes = wet_modes(
         operators,
         ABOVE_BAND * case.acoustics.band[1],
+        moduli_at=0.5 * sum(case.acoustics.band),
         solver=symmetric_solver(case, precision="double"),
     )
     frames = SectionFrames.of(blade, mesh, state.coupled.sections)

@@ -10,6 +10,7 @@ from quietblade.case import Case
 from quietblade.mesh import Mesh
 from quietblade.results import mode_records as records
 from quietblade.results import model
+from quietblade.study.losses import region_of
 from quietblade.study.sound import Sound
 from quietblade.study.vibration import Vibration, nodal_shapes, symmetric_solver
 from quietblade.typing import ComplexArray, FloatArray, Progress
@@ -130,7 +131,10 @@ def _losses(vibration: Vibration) -> records.LossShares:
     share = np.array(list(known.values())).T
     for column, values in enumerate(loss_shares(operators, damped).values()):
         share[damped.start[good], column] = values[good]
-    return records.LossShares(tuple(known), share)
+    regions = tuple(dict.fromkeys(map(region_of, known)))  # a film may have several static shears
+    parts = [[region_of(name) == region for name in known] for region in regions]
+    whole = np.array([share[:, own].sum(axis=1) for own in parts]).T
+    return records.LossShares(regions, whole)
 
 
 def _response(vibration: Vibration, sound: Sound) -> tuple[FloatArray, ComplexArray]:
@@ -149,7 +153,12 @@ def _dry_modes(case: Case, mesh: Mesh, vibration: Vibration) -> records.DryModes
     own = np.einsum("ij,ij->i", wet.vectors, (mass @ wet.vectors.T).T)
     # the wet mass of the shapes is one: without the water they would be this much faster
     highest = _BEYOND * float(np.max(np.abs(wet.frequency) / np.sqrt(own)))
-    found = dry_modes(operators, highest, solver=symmetric_solver(case, precision="double"))
+    found = dry_modes(
+        operators,
+        highest,
+        moduli_at=0.5 * sum(case.acoustics.band),
+        solver=symmetric_solver(case, precision="double"),
+    )
     shapes = frames.shapes(nodal_shapes(mesh, operators, found.vectors))
     naming = name_modes(frames.span, frames.chord, shapes, vibration.masses)
     pairs = match(found.vectors, wet.vectors, mass)
