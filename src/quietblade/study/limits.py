@@ -1,8 +1,13 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Limits of a case, and what can be known of its far field before a run."""
+"""Limits of a case, and what can be known of its far field before a run.
+
+The sound is imported where it is needed: a look at a case stays light.
+"""
+# ruff: noqa: PLC0415
 
 from collections.abc import Iterator
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -10,21 +15,23 @@ from quietblade.case import Case, Finding
 from quietblade.errors import Notice
 from quietblade.geometry import Blade
 from quietblade.typing import FloatArray
-from quietblade.vibroacoustics.bands import BASE_TEN, BASE_TWO, Bands, Limit
+
+if TYPE_CHECKING:
+    from quietblade.vibroacoustics.bands import Bands, Limit
 
 COLUMNS = ("frequency", "level")
 """Columns of a file of a limit."""
 
-OCTAVES = {"decidecade": BASE_TEN, "third-octave": BASE_TWO}
-"""Frequency ratio of an octave by the kind of bands."""
 
-
-def bands_of(kind: str, low: float, high: float) -> Bands:
+def bands_of(kind: str, low: float, high: float) -> "Bands":
     """Bands of a kind whose centres lie in a range [Hz]."""
-    return Bands.between(low, high, octave=OCTAVES[kind])
+    from quietblade.vibroacoustics.bands import BASE_TEN, BASE_TWO, Bands
+
+    octave = {"decidecade": BASE_TEN, "third-octave": BASE_TWO}[kind]
+    return Bands.between(low, high, octave=octave)
 
 
-def limits(case: Case) -> tuple[Limit, ...]:
+def limits(case: Case) -> "tuple[Limit, ...]":
     """Make the limits that the case gives, in its order.
 
     Raises
@@ -35,7 +42,9 @@ def limits(case: Case) -> tuple[Limit, ...]:
     return tuple(_limit(case, number) for number in range(len(case.limits)))
 
 
-def _limit(case: Case, number: int) -> Limit:
+def _limit(case: Case, number: int) -> "Limit":
+    from quietblade.vibroacoustics.bands import Limit
+
     words = case.limits[number]
     if words.table is None:
         return Limit(words.name, np.array(words.frequencies), np.array(words.levels))
@@ -106,7 +115,7 @@ def far_field_findings(case: Case, blade: Blade) -> Iterator[Finding]:
             )
 
 
-def limit_notices(case: Case, held: tuple[Limit, ...]) -> Iterator[Notice]:
+def limit_notices(case: Case, held: "tuple[Limit, ...]") -> Iterator[Notice]:
     """Say which limits have nothing to say about the band."""
     low, high = case.acoustics.band
     for number, (words, limit) in enumerate(zip(case.limits, held, strict=True)):
