@@ -23,7 +23,7 @@ NAMES = {
     "lift-coefficient", "convergence", "mode-shapes-C0", "mode-shapes-C1", "sound-power",
     "power-paths", "cavitation", "stress", "source-level", "bands", "directivity",
     "directivity-xy", "directivity-xz", "directivity-yz", "multipoles", "radiation-efficiency",
-    "campbell",
+    "campbell", "power-by-load", "mobility", "power-per-force", "root-forces",
 }  # fmt: skip
 
 

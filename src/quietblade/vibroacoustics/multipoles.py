@@ -16,13 +16,14 @@ import numpy as np
 from scipy.sparse import csr_matrix
 
 from quietblade.errors import Notice
+from quietblade.mesh.model import INTERFACE
 from quietblade.mesh.nodal import NodalBasis
 from quietblade.typing import AnyArray, ComplexArray, FloatArray, IntArray
 from quietblade.vibroacoustics.fluid import Water, coupling_matrix
 from quietblade.vibroacoustics.harmonics import outgoing, radial_factors, solid_harmonics
 from quietblade.vibroacoustics.operators import Operators, product_space
 
-CLOSED_SURFACE = "wet|excited|root"
+CLOSED_SURFACE = f"{INTERFACE}|root"
 
 
 @dataclass(frozen=True)
@@ -182,6 +183,7 @@ class SurfaceSources:
         motion: ngs.GridFunction | None = None,
         surface: str = CLOSED_SURFACE,
         center: FloatArray | None = None,
+        carried: csr_matrix | None = None,
     ) -> Self:
         """Integrate the sources over the closed surface.
 
@@ -197,6 +199,8 @@ class SurfaceSources:
         center : (3,) array or None
             None takes the middle of the surface's bounding box; the power does not depend on it,
             the number of degrees does.
+        carried : (V.ndof, n) csr_matrix or None
+            What a moving root does to the displacement of its nodes, `RootedSystem.carried`.
         """
         water = Water(operators.density, operators.sound_speed)
         nodes = basis.nodes_of(surface, codimension=1)
@@ -209,7 +213,10 @@ class SurfaceSources:
         space = product_space(fem)
         to_free = _selection(operators.free, space.ndof, operators.size)
         to_nodes = basis.interpolation[:, nodes].T
-        flux = to_nodes @ coupling.T @ to_free[: coupling.shape[0]]
+        displacement = to_free[: coupling.shape[0]]
+        if carried is not None:
+            displacement = displacement + carried
+        flux = to_nodes @ coupling.T @ displacement
         potential = to_free[space.Range(2).start :]
         rows = np.split(np.arange(coupling.shape[0]), 3)
         x, y, z = (csr_matrix(to_nodes @ coupling[row] @ potential) for row in rows)

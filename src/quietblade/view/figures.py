@@ -12,7 +12,7 @@ from quietblade.results.files import replacing
 from quietblade.results.model import Result
 from quietblade.results.store import RunFolder
 from quietblade.typing import AnyArray, Progress, silent
-from quietblade.view import bands, directivity, far_spectra, scenes, sections, spectra
+from quietblade.view import bands, directivity, far_spectra, scenes, sections, spectra, transfer
 from quietblade.view.campbell import draw_campbell
 from quietblade.view.style import DPI
 
@@ -91,7 +91,7 @@ def _drawings(folder: RunFolder, result: Result) -> Mapping[str, Drawing]:
     first = next(iter(result.configurations))
     drawings["sound-power"] = lambda: spectra.draw_sound_power(result, pictures(first))
     drawings["power-paths"] = lambda: spectra.draw_power_paths(result)
-    return drawings | _far_field(result)
+    return drawings | _far_field(result) | dict(transfer.drawings(result))
 
 
 def _far_field(result: Result) -> dict[str, Drawing]:

@@ -69,6 +69,11 @@ _CAPTIONS = {
     "radiation-efficiency": "Radiated power over that of a plane wave with the same motion.",
     "power-paths": "Where the injected power goes; the multipoles do not depend on the waves that "
     "the radiation condition reflects.",
+    "power-by-load": "Radiated sound power of each load alone, and of all together.",
+    "mobility": "Drive-point mobility of each load.",
+    "power-per-force": "Radiated power of each load alone per mean square force.",
+    "root-forces": "Force and moment of the blade on its root, and the power that a shaft in place "
+    "of the clamp takes, beside the radiated power.",
     "mode-shapes-C0": "Wet modes at rest.",
     "mode-shapes-C1": "Wet modes under load.",
     "campbell": "Wet modes under load over the speed of the shaft, with the blade rate's multiples "
