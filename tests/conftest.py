@@ -60,4 +60,4 @@ def small_film_blade() -> Blade:
 @pytest.fixture(scope="session")
 def coarse_mesh(small_film_blade: Blade) -> Mesh:
     """The paper's blade, very coarse, in a sphere of 1.3 m."""
-    return build_mesh(small_film_blade, MeshSpec(0.05, (0.0, 0.0, 0.7), 1.3, PATCH, 0.6))
+    return build_mesh(small_film_blade, MeshSpec(0.05, (0.0, 0.0, 0.7), 1.3, (PATCH,), 0.6))

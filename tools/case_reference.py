@@ -17,6 +17,7 @@ from typing import Any, get_args, get_origin
 from pydantic_core import PydanticUndefined
 
 from quietblade.case import Case
+from quietblade.case.excitation import EXCITATIONS
 from quietblade.case.fields import Words
 from quietblade.case.laminate import PlyWords
 from quietblade.case.library import NAMES, NOTE_OF, SOURCE_OF, library_material
@@ -141,6 +142,9 @@ def keys() -> Iterator[str]:
         elif name == "loads":
             for word, model in LOADS.items():
                 yield kind(f'`[[loads]]` with `kind = "{word}"`', model)
+        elif name == "excitation":
+            for word, model in EXCITATIONS.items():
+                yield kind(f'`[excitation]` or `[[excitation]]` with `kind = "{word}"`', model)
         elif (model := entry_model(field.annotation)) is not None:
             yield kind(f"`[[{name}]]`", model)
         else:

@@ -16,6 +16,7 @@ from quietblade.mesh.motion import solve_mesh_motion
 from quietblade.propulsion.structure import Structure
 from quietblade.propulsion.tangent import Tangent, compute_tangent
 from quietblade.study import solids, translate
+from quietblade.study.excitation_outcome import first_pressure
 from quietblade.study.preflight import preflight
 from quietblade.study.statics import solve_statics
 from quietblade.typing import FloatArray, silent
@@ -109,7 +110,8 @@ class WetBlade:
 
     def load(self, operators: Operators) -> FloatArray:
         """Right-hand side of the excitation (n,) [N]."""
-        force = pressure_force(self.mesh.fem, self.case.excitation.pressure, motion=self.motion)
+        pressure = first_pressure(self.case)
+        force = pressure_force(self.mesh.fem, pressure, motion=self.motion)
         return np.asarray(operators.right_hand_side(force))
 
     def sources(self, operators: Operators) -> SurfaceSources:

@@ -65,7 +65,7 @@ def plastic_wing(
     )
     centre = 0.2 + 0.5 * span
     patch = Patch(1, (0.8, 0.96), (0.3, 0.7))
-    mesh = build_mesh(blade, MeshSpec(size, (0.0, 0.0, centre), 1.5 * span, patch, 0.8 * span))
+    mesh = build_mesh(blade, MeshSpec(size, (0.0, 0.0, centre), 1.5 * span, (patch,), 0.8 * span))
     plastic = IsotropicSVK("plastic", 1000.0, modulus, poisson_ratio)
     structure = Structure(mesh.fem, {"blade": plastic}, basis=mesh.basis)
     surface = SurfaceQuadrature(mesh.nodes, mesh.interface)

@@ -151,7 +151,7 @@ def foil_mesh(edge: float, cell: float = CELL) -> Mesh:
     """Foil in a sphere of water of one span; the wall at the root is left out."""
     centre = (0.0, 0.0, 0.5 * SPAN)
     patch = Patch(1, (0.85, 0.93), (0.35, 0.65))
-    return build_mesh(foil_blade(edge), MeshSpec(cell, centre, SPAN, patch))
+    return build_mesh(foil_blade(edge), MeshSpec(cell, centre, SPAN, (patch,)))
 
 
 def foil_structure(edge: float, material: Material, cell: float = CELL) -> Structure:

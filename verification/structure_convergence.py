@@ -195,7 +195,7 @@ def mixed_mesh(size: float = 0.05) -> Mesh:
         trailing_edge=0.006, film=Film((0.1, 0.9), (0.25, 0.65), 1.0e-3),
     )  # fmt: skip
     patch = Patch(1, (0.90, 0.96), (0.30, 0.70))
-    return build_mesh(blade, MeshSpec(size, (0.0, 0.0, 0.7), 1.3, patch, 0.6))
+    return build_mesh(blade, MeshSpec(size, (0.0, 0.0, 0.7), 1.3, (patch,), 0.6))
 
 
 @dataclass(frozen=True)

@@ -39,7 +39,8 @@ def test_the_rest_arrives() -> None:
     assert spec.size == 0.025
     assert spec.water_size == 0.3
     assert spec.centre == pytest.approx((0.0, 0.0, 0.7))
-    assert (spec.patch.side, spec.patch.span) == (-1, (0.85, 0.95))
+    (patch,) = spec.patches
+    assert (patch.side, patch.span) == (-1, (0.85, 0.95))
     inflow = translate.inflow(case)
     assert (inflow.speed, inflow.density) == (5.0, 1025.0)
     assert inflow.rotation == pytest.approx(2 * pi)

@@ -69,26 +69,26 @@ def test_wetted_triangles_lie_on_the_blade(coarse_mesh: Mesh, small_film_blade: 
 
 def test_twisted_swept_cambered_blade_meshes() -> None:
     blade = make_twisted_blade()
-    mesh = build_mesh(blade, MeshSpec(0.035, (0.0, 0.0, 0.7), 1.3, PATCH, 0.6))
+    mesh = build_mesh(blade, MeshSpec(0.035, (0.0, 0.0, 0.7), 1.3, (PATCH,), 0.6))
     assert volume(mesh, "blade|film") == pytest.approx(blade.volume(), rel=0.03)
     assert min(q.least_jacobian for q in mesh.quality.values()) > 0.0
     assert len(mesh.faces["excited"]) > 0
 
 
 def test_blade_without_film_meshes() -> None:
-    mesh = build_mesh(make_paper_blade(), MeshSpec(0.05, (0.0, 0.0, 0.7), 1.3, PATCH, 0.6))
+    mesh = build_mesh(make_paper_blade(), MeshSpec(0.05, (0.0, 0.0, 0.7), 1.3, (PATCH,), 0.6))
     assert set(mesh.cells) == {"blade", "water"}
 
 
 def test_cells_too_coarse_for_the_curved_blade_are_refused_with_the_place() -> None:
     with pytest.raises(MeshError, match=r"inverted at x = .* m, y = .* m, z = .* m"):
-        build_mesh(make_twisted_blade(), MeshSpec(0.05, (0.0, 0.0, 0.7), 1.3, PATCH, 0.6))
+        build_mesh(make_twisted_blade(), MeshSpec(0.05, (0.0, 0.0, 0.7), 1.3, (PATCH,), 0.6))
 
 
 def test_film_that_pierces_the_blade_is_refused() -> None:
     film = dataclasses.replace(PAPER_FILM, thickness=8e-3)
     with pytest.raises(MeshError, match="film"):
-        build_mesh(make_paper_blade(film), MeshSpec(0.05, (0.0, 0.0, 0.7), 1.3, PATCH, 0.6))
+        build_mesh(make_paper_blade(film), MeshSpec(0.05, (0.0, 0.0, 0.7), 1.3, (PATCH,), 0.6))
 
 
 def test_jacobians_tell_an_inverted_tetrahedron() -> None:

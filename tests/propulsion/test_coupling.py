@@ -206,7 +206,7 @@ def test_equilibrium_beyond_divergence_is_said_to_be_unstable() -> None:
 
 def test_twisted_swept_cambered_blade_finds_its_equilibrium() -> None:
     blade = make_twisted_blade()
-    mesh = build_mesh(blade, MeshSpec(0.035, (0.0, 0.0, 0.7), 1.3, PATCH, 0.6))
+    mesh = build_mesh(blade, MeshSpec(0.035, (0.0, 0.0, 0.7), 1.3, (PATCH,), 0.6))
     structure, transfer = parts(mesh, blade, 120e9)
     state = solve_static(structure, transfer, StripInflow(5.0, 0.58))
     assert state.converged

@@ -14,9 +14,10 @@ from quietblade.geometry import NacaFourDigit
 from quietblade.mesh import Mesh
 from quietblade.results import mode_records as records
 from quietblade.results import model as m
+from quietblade.results.excitations import ExcitationTable, TransferTable
 from quietblade.results.store import RunFolder
 from quietblade.results.vtk import PointField, write_fields
-from quietblade.typing import AnyArray, FloatArray
+from quietblade.typing import AnyArray, ComplexArray, FloatArray
 
 SPEED, ROTATION, DENSITY = 5.0, 0.58, 1000.0
 HUB, SPAN, ROOT_CHORD, TIP_CHORD = 0.2, 1.0, 0.25, 0.075
@@ -322,6 +323,8 @@ def make_configuration(
         far_field=_far_field(frequency, power[2]),
         directivity=_directivity(peaks),
         limits=_limits(frequency, radiated),
+        excitations=make_excitations(frequency, radiated, injected),
+        transfer=make_transfer(frequency, modal_mobility.sum(axis=0), injected),
         radiation_condition="BGT-1",
         outer_radius=1.3,
         sound_speed=1500.0,
@@ -438,6 +441,44 @@ def make_moduli() -> m.ModulusTable:
 def _zener(frequency: FloatArray) -> AnyArray:
     z = (2j * np.pi * frequency * 1e-3) ** 0.6
     return (1.0 + 8.0 * z) / (1.0 + z)
+
+
+def make_excitations(
+    frequency: FloatArray, radiated: FloatArray, injected: FloatArray
+) -> ExcitationTable:
+    share = np.array([[0.7], [0.3]])
+    ones = np.ones_like(frequency)
+    return ExcitationTable(
+        signal="harmonic",
+        correlation="",
+        name=("patch", "engine"),
+        kind=("pressure", "root-motion"),
+        unit=("Pa", "m/s"),
+        size=np.array([1e-3, np.nan]),
+        amplitude=np.stack([1e4 * ones, 1e-3j * ones]),
+        radiated=share * radiated,
+        injected=share * injected,
+        mean_level=10.0 * np.log10(share[:, 0] * radiated.mean() / m.REFERENCE_POWER),
+    )
+
+
+def make_transfer(
+    frequency: FloatArray, mobility: ComplexArray, injected: FloatArray
+) -> TransferTable:
+    ramp = frequency / frequency[0]
+    force = np.array([0.3, 9.0, 1.0])[:, None] * ramp * np.sqrt(injected / injected.mean())
+    blocked = np.stack([force, 0.2 * force]) * np.exp(0.1j)
+    return TransferTable(
+        functions=("mobility", "power-per-force", "blocked-force", "shaft"),
+        about=np.array([0.0, 0.0, HUB]),
+        mobility=np.stack([mobility, 0.3j * np.abs(mobility) + mobility]),
+        power_per_force=np.stack([injected, 0.1 * injected]) / 50.0,
+        blocked_force=blocked,
+        blocked_moment=0.5 * blocked,
+        root_force=force,
+        root_moment=0.5 * force,
+        shaft_power=0.01 * injected * ramp,
+    )
 
 
 def _peaks(frequency: FloatArray, power: FloatArray) -> m.PeakTable:

@@ -24,6 +24,7 @@ NAMES = {
     "power-paths", "power-shares", "moduli", "cavitation", "stress", "source-level", "bands",
     "directivity", "directivity-xy", "directivity-xz", "directivity-yz", "multipoles",
     "radiation-efficiency", "campbell",
+    "power-by-load", "mobility", "power-per-force", "root-forces",
 }  # fmt: skip
 
 
@@ -84,7 +85,9 @@ def test_the_report_needs_nothing_else(
     assert pictures == {file.read_bytes() for file in drawn}
     assert "script" not in links.tags
     assert "url(" not in page
-    assert "http" not in re.sub(r"<pre>.*?</pre>", "", page, flags=re.DOTALL)
+    # neither the case file nor the digits of the pictures, in which any four letters may occur
+    own = re.sub(r"<pre>.*?</pre>|base64,[^\"]*", "", page, flags=re.DOTALL)
+    assert "http" not in own
     for part in ("The paper&#x27;s composite blade", "größe", "1182", "ngsolve"):
         assert part in page, part
 

@@ -9,13 +9,14 @@ from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
 
+from quietblade.case.excitation import EXCITATIONS
 from quietblade.case.fields import CASE_PROBLEM, Quantity
 from quietblade.case.laminate import PlyWords
 from quietblade.case.library import LAW_OF
 from quietblade.case.loss import loss_model
 from quietblade.case.materials import BLADE_LAWS, FILM_LAWS, LAWS, ply_findings
 from quietblade.case.problems import Path, dotted, nearest, suggestion
-from quietblade.case.source import Finding
+from quietblade.case.source import Finding, as_written
 from quietblade.case.spans import Spanwise
 from quietblade.case.structure import LOADS
 
@@ -41,15 +42,18 @@ class _Choice:
     key: str
     what: str
     models: Mapping[str, Model]
+    usual: str = ""
+    """Word of an entry that has none."""
 
     def model(self, entry: Any) -> Model | None:
-        word = entry.get(self.key) if isinstance(entry, Mapping) else None
+        word = entry.get(self.key, self.usual) if isinstance(entry, Mapping) else None
         return self.models.get(word) if isinstance(word, str) else None
 
 
 _CHOICES = {
     "materials": _Choice("law", "a material law", LAWS),
     "loads": _Choice("kind", "a kind of load", LOADS),
+    "excitation": _Choice("kind", "a kind of excitation", EXCITATIONS, "pressure"),
 }
 
 
@@ -87,7 +91,7 @@ def _explain(detail: ErrorDetails, data: Mapping[str, Any], root: Model) -> Find
 
 def _in_file(loc: tuple[int | str, ...]) -> Path:
     # pydantic inserts the word that tells the model behind the name or number of the entry
-    return loc[:2] + loc[3:] if loc[0] in _CHOICES and len(loc) > 2 else loc
+    return loc[:2] + loc[3:] if loc[:1] and loc[0] in _CHOICES and len(loc) > 2 else loc
 
 
 def _missing(path: Path, data: Mapping[str, Any], root: Model) -> Finding:
@@ -96,7 +100,7 @@ def _missing(path: Path, data: Mapping[str, Any], root: Model) -> Finding:
     info = model.model_fields[str(key)] if model else None
     if info is None:
         return Finding(path, "is missing", f"Add {key}")
-    inner = _table_model(info.annotation)
+    inner = _whole_table(str(key), info)
     if inner is not None:
         wanted = [name for name, f in inner.model_fields.items() if f.is_required()]
         return Finding(path, "this table is missing", f"Add [{key}] with {', '.join(wanted)}")
@@ -122,7 +126,7 @@ def _unknown(path: Path, data: Mapping[str, Any], root: Model) -> Finding:
     elsewhere = [
         dotted((name, str(key)))
         for name, info in root.model_fields.items()
-        if (inner := _table_model(info.annotation)) and key in inner.model_fields
+        if (inner := _whole_table(name, info)) and key in inner.model_fields
     ]
     if elsewhere:
         return Finding(path, "unknown key here", f"Did you mean {' or '.join(elsewhere)}?")
@@ -147,8 +151,14 @@ def _model_at(path: Path, data: Mapping[str, Any], root: Model) -> Model | None:
     return model
 
 
+def _whole_table(name: str, info: FieldInfo) -> Model | None:
+    """Model of a table at the top, the usual one where there are several; None for other keys."""
+    choice = _CHOICES.get(name)
+    return choice.models.get(choice.usual) if choice else _table_model(info.annotation)
+
+
 def _at(path: Path, data: Any) -> Any:
-    for part in path:
+    for part in as_written(path, data):
         try:
             data = data[part]
         except (LookupError, TypeError):

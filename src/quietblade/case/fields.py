@@ -209,6 +209,14 @@ StiffnessVector = Annotated[tuple[Stiffness, Stiffness, Stiffness], entries(3)]
 AngularStiffnessVector = Annotated[
     tuple[AngularStiffness, AngularStiffness, AngularStiffness], entries(3)
 ]
+Damping = Annotated[float, Quantity(units.DAMPING, least=0.0)]
+AngularDamping = Annotated[float, Quantity(units.ANGULAR_DAMPING, least=0.0)]
+Mass = Annotated[float, Quantity(units.MASS, least=0.0)]
+Inertia = Annotated[float, Quantity(units.INERTIA, least=0.0)]
+DampingVector = Annotated[tuple[Damping, Damping, Damping], entries(3)]
+AngularDampingVector = Annotated[tuple[AngularDamping, AngularDamping, AngularDamping], entries(3)]
+MassVector = Annotated[tuple[Mass, Mass, Mass], entries(3)]
+InertiaVector = Annotated[tuple[Inertia, Inertia, Inertia], entries(3)]
 """Components along the blade's axes x, y, z."""
 
 

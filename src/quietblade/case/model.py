@@ -10,12 +10,13 @@ from os import PathLike
 from pathlib import Path as FilePath
 from typing import Any, Self
 
-from pydantic import Field, PrivateAttr, ValidationError
+from pydantic import Field, PrivateAttr, ValidationError, model_validator
 
 from quietblade.case.campbell import CampbellWords
+from quietblade.case.excitation import Excitations, RootMotionWords, TransferWords
 from quietblade.case.explain import explain, material_findings
 from quietblade.case.far_field import BandsWords, FarFieldWords, LimitWords
-from quietblade.case.fields import Text, Words
+from quietblade.case.fields import Text, Words, wrong
 from quietblade.case.flow import FlowWords
 from quietblade.case.laminate import LaminateWords
 from quietblade.case.library import library_material
@@ -28,7 +29,6 @@ from quietblade.case.tables import (
     FILE,
     AcousticsWords,
     BladeWords,
-    ExcitationWords,
     FilmWords,
     MeshWords,
     SolverWords,
@@ -58,7 +58,12 @@ class Case(Words):
         StaticWords(), title="Static", description="Equilibrium of blade and flow"
     )
     acoustics: AcousticsWords = Field(title="Acoustics", description="Vibration and sound")
-    excitation: ExcitationWords = Field(title="Excitation", description="Harmonic load")
+    excitation: Excitations = Field(
+        title="Excitation", description="What sets the blade in motion: a table, or several"
+    )
+    transfer: TransferWords | None = Field(
+        None, title="Transfer", description="Transfer functions beside the spectrum"
+    )
     far_field: FarFieldWords = Field(
         FarFieldWords(), title="Far field", description="Directivity and pressure at points"
     )
@@ -73,6 +78,53 @@ class Case(Words):
     solver: SolverWords = Field(SolverWords(), title="Solver", description="Linear solver")
 
     _source: Source = PrivateAttr(default_factory=Source)
+
+    @model_validator(mode="after")
+    def _check_excitation(self) -> "Case":
+        random = self.acoustics.signal == "random"
+        for number, words in enumerate(self.excitation):
+            at = ("excitation", number)
+            if not random and words.density_value is not None:
+                raise wrong(
+                    "is the density of a random load, and the signal is harmonic",
+                    f'Write {words.amplitude_key}, or signal = "random" in [acoustics]',
+                    at=(*at, "density"),
+                )
+            if random and words.table is None and words.density_value is None:
+                given = words.amplitude_value is not None
+                raise wrong(
+                    "is an amplitude, and the signal is random" if given else "has no density",
+                    'Write density, or signal = "harmonic" in [acoustics]',
+                    at=(*at, words.amplitude_key) if given else at,
+                )
+            if random and words.phase:
+                raise wrong("means nothing for a random load", "Leave it out", at=(*at, "phase"))
+        self._check_root()
+        forces = [words for words in self.excitation if not isinstance(words, RootMotionWords)]
+        if self.transfer is not None and self.transfer.shaft is not None and not forces:
+            raise wrong(
+                "takes power from forces on the blade, and there are none",
+                "Add one to [[excitation]]",
+                at=("transfer", "shaft"),
+            )
+        return self
+
+    def _check_root(self) -> None:
+        """On springs the root is free to move: nothing can be forced on it or read at a clamp."""
+        if self.root.support == "clamped":
+            return
+        remedy = 'Write support = "clamped" in [root], and the springs as [transfer.shaft]'
+        for number, words in enumerate(self.excitation):
+            if isinstance(words, RootMotionWords):
+                raise wrong(
+                    "moves a root that stands on springs", remedy, at=("excitation", number, "kind")
+                )
+        if self.transfer is not None and self.transfer.of_root:
+            raise wrong(
+                "asks for forces on a clamp, and the root stands on springs",
+                remedy,
+                at=("transfer", "functions"),
+            )
 
     @classmethod
     def load(cls, path: str | PathLike[str]) -> Self:
@@ -169,6 +221,9 @@ class Case(Words):
         for part in self.parts:
             for key, file in loss_files(self.loss(part)[1]):
                 named[f"{part}.loss_factor.{key}"] = file
+        for number, words in enumerate(self.excitation):
+            if words.table is not None:
+                named[f"excitation[{number}].table"] = words.table
         return {key: self.folder / name for key, name in named.items()}
 
     def plain(self) -> dict[str, Any]:

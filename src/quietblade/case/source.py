@@ -69,11 +69,26 @@ class Source:
 
     def problem(self, finding: Finding) -> Problem:
         """Turn a finding into a problem with file, line, key and value."""
-        value = self.value(finding.path)
-        whole = value is _ABSENT or (isinstance(value, Mapping) and len(finding.path) < 2)
+        path = as_written(finding.path, self.data)
+        value = self.value(path)
+        whole = value is _ABSENT or (isinstance(value, Mapping) and len(path) < 2)
         text = "" if whole else shown(value)
-        line = self.line(finding.path)
-        return Problem(self.file, line, dotted(finding.path), text, finding.message, finding.remedy)
+        line = self.line(path)
+        return Problem(self.file, line, dotted(path), text, finding.message, finding.remedy)
+
+
+def as_written(path: Path, data: Any) -> Path:
+    """Path in the file: one table may stand where a list of tables is meant."""
+    kept: list[str | int] = []
+    for part in path:
+        if isinstance(part, int) and isinstance(data, Mapping):
+            continue
+        kept.append(part)
+        try:
+            data = data[part]
+        except (LookupError, TypeError):
+            data = None
+    return tuple(kept)
 
 
 def read_source(path: FilePath) -> Source:

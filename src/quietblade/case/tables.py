@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The tables of a case file: blade, film, water, flow, static, acoustics, excitation and so on."""
+"""The tables of a case file: blade, film, water, flow, static, acoustics and so on."""
 
 from itertools import pairwise
 from typing import Annotated, Literal, get_args
 
 from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
+from quietblade.case.excitation import Correlation, Signal
 from quietblade.case.fields import (
     Band,
     Count,
@@ -19,7 +20,6 @@ from quietblade.case.fields import (
     LevelDifference,
     Number,
     Point,
-    Pressure,
     PressureOrZero,
     Speed,
     Text,
@@ -53,7 +53,6 @@ Radiation = Literal["dtn", "bgt1", "bgt2"]
 Sweep = Literal["reduced", "direct"]
 Tangent = Literal["full", "paper"]
 Loss = Literal["isochoric", "paper"]
-Side = Literal["upper", "lower"]
 SolverName = Literal["auto", "rslab", "mkl-pardiso", "superlu"]
 Precision = Literal["mixed", "double"]
 
@@ -275,6 +274,28 @@ class AcousticsWords(Words):
         description="Whether to find the modes without water too, beside the wet ones",
     )
 
+    signal: Annotated[Signal, one_of(Signal, "a kind of signal")] = Field(
+        "harmonic",
+        title="Signal",
+        description="Excitations are peak amplitudes (harmonic) or spectral densities (random); "
+        "powers are then per hertz",
+    )
+    correlation: Annotated[Correlation, one_of(Correlation, "a correlation")] = Field(
+        "none",
+        title="Correlation",
+        description="Random loads are independent (none), or all in phase (full)",
+    )
+
+    @model_validator(mode="after")
+    def _check_signal(self) -> "AcousticsWords":
+        if self.signal == "harmonic" and self.correlation != "none":
+            raise wrong(
+                "is given for harmonic loads, which have phases",
+                'Leave it out, or write signal = "random"',
+                at=("correlation",),
+            )
+        return self
+
     @model_validator(mode="after")
     def _check_step(self) -> "AcousticsWords":
         low, high = self.band
@@ -292,17 +313,6 @@ class AcousticsWords(Words):
                 at=("step",),
             )
         return self
-
-
-class ExcitationWords(Words):
-    """Harmonic pressure on a patch of the blade's surface."""
-
-    pressure: Pressure = Field(1.0, title="Pressure", description="Peak amplitude")
-    side: Annotated[Side, one_of(Side, "a side of the blade")] = Field(
-        "upper", title="Side", description="Upper (suction) or lower face"
-    )
-    span: Extent = Field(title="Span", description="Range of span fractions")
-    chord: Extent = Field(title="Chord", description="Range of chord fractions")
 
 
 class MeshWords(Words):

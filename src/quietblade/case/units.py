@@ -67,6 +67,35 @@ TIME = Kind("a time", "s", "0.2 ms", ("s", "ms", "µs"), 1e-18, 1e18)
 TEMPERATURE = Kind("a temperature", "K", "15 degC", ("degC", "K"), 1.0, 3e3)
 TEMPERATURE_STEP = Kind("a difference of temperatures", "K", "101.6 K", ("K",), 1e-6, 1e5)
 MOLAR_ENERGY = Kind("an energy per amount", "J/mol", "80 kJ/mol", ("kJ/mol", "J/mol"), 1e-3, 1e9)
+DAMPING = Kind("a force per speed", "N*s/m", "5 kN*s/m", ("N*s/m", "kN*s/m"), 1e-9, 1e15)
+ANGULAR_DAMPING = Kind(
+    "a moment per angular speed", "N*m*s/rad", "50 N*m*s/rad", ("N*m*s/rad",), 1e-9, 1e18
+)
+MASS = Kind("a mass", "kg", "12 kg", ("kg", "g"), 1e-9, 1e9)
+INERTIA = Kind("a moment of inertia", "kg*m^2", "0.4 kg*m^2", ("kg*m^2",), 1e-12, 1e12)
+PRESSURE_DENSITY = Kind(
+    "a spectral density of pressure", "Pa^2/Hz", "4 Pa^2/Hz", ("Pa^2/Hz", "kPa^2/Hz"), 1e-18, 1e24
+)
+FORCE_DENSITY = Kind(
+    "a spectral density of force", "N^2/Hz", "0.1 N^2/Hz", ("N^2/Hz",), 1e-18, 1e24
+)
+LINE_FORCE_DENSITY = Kind(
+    "a spectral density of force per length", "N^2/m^2/Hz", "0.1 N^2/m^2/Hz", ("N^2/m^2/Hz",),
+    1e-18, 1e30,
+)  # fmt: skip
+LENGTH_DENSITY = Kind(
+    "a spectral density of displacement", "m^2/Hz", "1e-12 m^2/Hz", ("m^2/Hz", "mm^2/Hz"), 1e-30, 1
+)
+SPEED_DENSITY = Kind(
+    "a spectral density of velocity", "m^2/s^2/Hz", "1e-8 m^2/s^2/Hz", ("m^2/s^2/Hz",), 1e-27, 1e6
+)
+ACCELERATION_DENSITY = Kind(
+    "a spectral density of acceleration", "m^2/s^4/Hz", "1e-4 m^2/s^4/Hz", ("m^2/s^4/Hz",),
+    1e-24, 1e12,
+)  # fmt: skip
+ANGLE_DENSITY = Kind(
+    "a spectral density of rotation", "rad^2/Hz", "1e-10 rad^2/Hz", ("rad^2/Hz",), 1e-30, 1e2
+)
 LEVEL = Kind("a difference of levels", "dB", "0.01 dB", ("dB",), 1e-9, 1e3)
 SOUND_LEVEL = Kind("a level", "dB", "120 dB", ("dB",), 0.0, 1e3)
 FRACTION = Kind("a fraction", "", "6 %", ("%",), 0.0, 1e3)
@@ -81,7 +110,9 @@ _UNREADABLE = (AttributeError, ArithmeticError, AssertionError, LookupError, Typ
 
 _KINDS = (
     LENGTH, ANGLE, SPEED, ANGULAR_SPEED, FREQUENCY, PRESSURE, DENSITY, VISCOSITY, FRACTION, FORCE,
-    LINE_FORCE, MOMENT_PER_ANGLE, ACCELERATION, LEVEL, TIME, TEMPERATURE, MOLAR_ENERGY,
+    LINE_FORCE, MOMENT_PER_ANGLE, ACCELERATION, LEVEL, TIME, TEMPERATURE, MOLAR_ENERGY, DAMPING,
+    ANGULAR_DAMPING, MASS, INERTIA, PRESSURE_DENSITY, FORCE_DENSITY, LINE_FORCE_DENSITY,
+    LENGTH_DENSITY, SPEED_DENSITY, ACCELERATION_DENSITY, ANGLE_DENSITY,
 )  # fmt: skip
 
 

@@ -8,6 +8,12 @@ from typing import Any
 import numpy as np
 
 from quietblade.case import Case
+from quietblade.case.excitation import (
+    AnyExcitationWords,
+    PatchWords,
+    PushWords,
+    RootMotionWords,
+)
 from quietblade.case.laminate import LaminateWords
 from quietblade.case.materials import (
     AnisotropicWords,
@@ -19,6 +25,7 @@ from quietblade.case.spans import ConstantSpan, FormulaSpan, SpanValue
 from quietblade.case.units import in_unit
 from quietblade.study.losses import Modulus
 from quietblade.study.preflight import Preflight
+from quietblade.study.spectra import names
 
 Rows = list[tuple[str, str]]
 
@@ -81,7 +88,7 @@ def _flow_rows(case: Case, known: Preflight) -> Rows:
 
 
 def _acoustics_rows(case: Case, known: Preflight) -> Rows:
-    acoustics, patch = case.acoustics, case.excitation
+    acoustics = case.acoustics
     low, high = acoustics.band
     centre = ", ".join(f"{x:.4g}" for x in known.centre)
     return [
@@ -95,11 +102,7 @@ def _acoustics_rows(case: Case, known: Preflight) -> Rows:
         ("stream", "damps the blade" if acoustics.flow_damping else "does not damp the blade"),
         ("modes", "wet and dry" if acoustics.dry_modes else "wet"),
         *_campbell_rows(case),
-        (
-            "excitation",
-            f"{patch.pressure:g} Pa on the {patch.side} face, span {_percent(patch.span)}, "
-            f"chord {_percent(patch.chord)}",
-        ),
+        *_excitation_rows(case),
     ]
 
 
@@ -135,6 +138,43 @@ def _campbell_rows(case: Case) -> Rows:
         ),
         ("  costs", f"{count} more equilibria, mesh motions and solutions for wet modes"),
     ]
+
+
+def _excitation_rows(case: Case) -> Rows:
+    random = case.acoustics.signal == "random"
+    rows = [
+        (f"excitation {name}", f"{_amplitude(words, random=random)} {_place(words)}")
+        for name, words in zip(names(case), case.excitation, strict=True)
+    ]
+    if random:
+        rows.append(("signal", f"random, correlation {case.acoustics.correlation}"))
+    if case.transfer is not None:
+        rows.append(("transfer functions", ", ".join(case.transfer.functions)))
+    return rows
+
+
+def _amplitude(words: AnyExcitationWords, *, random: bool) -> str:
+    if words.table is not None:
+        return f"{words.table} [{words.density_unit if random else words.unit}],"
+    if random:
+        return f"{words.density_value:g} {words.density_unit}"
+    value = 1.0 if words.amplitude_value is None else words.amplitude_value
+    phase = f" at {degrees(words.phase):.4g} deg" if words.phase else ""
+    return f"{value:g} {words.unit}{phase}"
+
+
+def _place(words: AnyExcitationWords) -> str:
+    if isinstance(words, PatchWords):
+        return (
+            f"on the {words.side} face, span {_percent(words.span)}, chord {_percent(words.chord)}"
+        )
+    if isinstance(words, RootMotionWords):
+        how = "about" if words.motion == "rotation" else "along"
+        return f"{words.motion} of the root {how} {words.axis}"
+    ends = (words.at,) if isinstance(words, PushWords) else (words.start, words.end)
+    places = " to ".join(f"({100 * s:.3g} % span, {100 * xi:.3g} % chord)" for s, xi in ends)
+    along = ", ".join(f"{x:g}" for x in words.direction)
+    return f"on the {words.face} face at {places}, along ({along})"
 
 
 def _number_rows(case: Case, known: Preflight) -> Rows:

@@ -14,7 +14,7 @@ import numpy as np
 from quietblade.errors import MeshError
 from quietblade.geometry import Blade
 from quietblade.mesh.cad import Patch, Solids, build_solids
-from quietblade.mesh.model import CellBlock, Mesh
+from quietblade.mesh.model import CellBlock, Mesh, patch_name
 from quietblade.mesh.quality import poor_cell_notices, region_quality
 from quietblade.typing import FloatArray, IntArray
 
@@ -43,8 +43,8 @@ class MeshSpec:
         Centre of the water sphere [m].
     radius : float
         Its radius [m].
-    patch : Patch
-        Excited part of the blade's surface.
+    patches : tuple of Patch
+        Excited parts of the blade's surface, which do not touch each other; there may be none.
     water_size : float or None
         Edge length at the sphere [m]; a quarter of the radius if None.
     """
@@ -52,7 +52,7 @@ class MeshSpec:
     size: float
     centre: tuple[float, float, float]
     radius: float
-    patch: Patch
+    patches: tuple[Patch, ...]
     water_size: float | None = None
 
 
@@ -76,7 +76,7 @@ def build_mesh(blade: Blade, spec: MeshSpec) -> Mesh:
     centre = np.array(spec.centre)
     with _gmsh_session():
         try:
-            solids = build_solids(blade, centre, spec.radius, spec.patch)
+            solids = build_solids(blade, centre, spec.radius, spec.patches)
             _set_film_layer(blade, solids, spec.size)
             _set_sizes(solids, spec)
             gmsh.model.mesh.generate(3)
@@ -167,10 +167,11 @@ def _set_sizes(solids: Solids, spec: MeshSpec) -> None:
     for name, value in limits.items():
         mesh.field.setNumber(growth, name, value)
     mesh.field.setAsBackgroundMesh(growth)
-    side_faces = [f for f in wetted if _carries(f, solids.outlines)]
-    if len(side_faces) != 1:
-        raise MeshError("the excited patch does not lie on one face of the blade")
-    mesh.embed(1, solids.outlines, 2, side_faces[0])
+    for outline in solids.outlines:
+        side_faces = [f for f in wetted if _carries(f, outline)]
+        if len(side_faces) != 1:
+            raise MeshError("the excited patch does not lie on one face of the blade")
+        mesh.embed(1, outline, 2, side_faces[0])
 
 
 def _carries(face: int, curves: list[int]) -> bool:
@@ -202,7 +203,7 @@ def _collect(blade: Blade, solids: Solids, spec: MeshSpec, centre: FloatArray) -
     quality = {
         name: region_quality(name, volume, position) for name, volume in solids.volumes().items()
     }
-    faces = _named_faces(blade, solids, spec.patch, nodes, number)
+    faces = _named_faces(blade, solids, spec.patches, nodes, number)
     notices = poor_cell_notices(quality)
     return Mesh(nodes, cells, faces, centre, spec.radius, quality, notices)
 
@@ -225,7 +226,11 @@ def _triangles(face: int, number: IntArray) -> IntArray:
 
 
 def _named_faces(
-    blade: Blade, solids: Solids, patch: Patch, nodes: FloatArray, number: IntArray
+    blade: Blade,
+    solids: Solids,
+    patches: tuple[Patch, ...],
+    nodes: FloatArray,
+    number: IntArray,
 ) -> dict[str, IntArray]:
     """Triangles of each boundary; which side they point to is left open."""
     wetted = _wetted_faces(solids)
@@ -235,15 +240,17 @@ def _named_faces(
     middle = nodes[triangles[:, 3:]].mean(axis=1)
     s, xi, eta = blade.locate(middle)
     mean_line = blade.family.camber_line(xi, blade.camber(s))[0]
-    excited = (
-        (s > patch.span[0]) & (s < patch.span[1])
+    excited = {
+        patch_name(k): (s > patch.span[0]) & (s < patch.span[1])
         & (xi > patch.chord[0]) & (xi < patch.chord[1])
         & (patch.side * (eta - mean_line) > 0.0)
         & ~at_root
-    )  # fmt: skip
+        for k, patch in enumerate(patches)
+    }  # fmt: skip
+    rest = ~at_root & ~np.any([*excited.values(), np.zeros_like(at_root)], axis=0)
     return {
-        "wet": triangles[~at_root & ~excited],
-        "excited": triangles[excited],
+        "wet": triangles[rest],
+        **{name: triangles[inside] for name, inside in excited.items()},
         "root": triangles[at_root],
         "outer": np.concatenate([_triangles(face, number) for face in outer]),
     }

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Solids of blade, film and water sphere in gmsh's OpenCASCADE kernel."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import gmsh
@@ -43,14 +44,14 @@ class Solids:
     ----------
     blade, film, water : int or None
         Volumes (no film: None).
-    outlines : list of int
-        Curves of the excited patch, lying on the blade's face.
+    outlines : tuple of list of int
+        Curves of each excited patch, lying on the blade's face.
     """
 
     blade: int
     film: int | None
     water: int
-    outlines: list[int]
+    outlines: tuple[list[int], ...]
 
     def volumes(self) -> dict[str, int]:
         """Region name to volume."""
@@ -58,7 +59,9 @@ class Solids:
         return {name: tag for name, tag in named.items() if tag is not None}
 
 
-def build_solids(blade: Blade, centre: FloatArray, radius: float, patch: Patch) -> Solids:
+def build_solids(
+    blade: Blade, centre: FloatArray, radius: float, patches: Sequence[Patch]
+) -> Solids:
     """Make conforming solids in the current gmsh model.
 
     Raises
@@ -75,7 +78,7 @@ def build_solids(blade: Blade, centre: FloatArray, radius: float, patch: Patch) 
         tools.append(_loft([_film_edges(blade, s) for s in (first, *inner, last)]))
     sphere = (3, occ.addSphere(*centre, radius))
     _, mapping = occ.fragment([sphere], tools)
-    outlines = _outlines(blade, patch)
+    outlines = tuple(_outlines(blade, patch) for patch in patches)
     occ.synchronize()
     film = {tag for _, tag in mapping[2]} if blade.film is not None else set()
     solid = {tag for _, tag in mapping[1]} - film

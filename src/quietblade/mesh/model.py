@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """The mesh as everybody sees it: nodes, cells by region, faces by name, and the NGSolve mesh."""
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -20,8 +21,17 @@ REGIONS = ("blade", "film", "water")
 BOUNDARIES = ("wet", "excited", "root", "outer")
 """Boundaries: wetted blade, its excited patch, clamped root face, outer sphere."""
 
-INTERFACE = "wet|excited"
-"""The whole fluid-structure interface."""
+EXCITED = r"excited\d*"
+"""Name pattern of the excited patches: the first is "excited", then come "excited2" and so on."""
+
+INTERFACE = f"wet|{EXCITED}"
+"""Name pattern of the whole fluid-structure interface."""
+
+
+def patch_name(number: int) -> str:
+    """Name of the boundary of an excited patch, by its number from 0."""
+    return "excited" if number == 0 else f"excited{number + 1}"
+
 
 # Netgen's node order of second-order cells, from VTK's (which Mesh.cells uses).
 _NETGEN_FROM_VTK = {
@@ -112,7 +122,9 @@ class Mesh:
     @cached_property
     def interface(self) -> IntArray:
         """Six-node triangles of the whole fluid-structure interface, (m, 6)."""
-        return np.concatenate([self.faces[name] for name in INTERFACE.split("|")])
+        return np.concatenate(
+            [faces for name, faces in self.faces.items() if re.fullmatch(INTERFACE, name)]
+        )
 
     def census(self) -> dict[str, dict[str, int]]:
         """Count the cells of each region and kind."""

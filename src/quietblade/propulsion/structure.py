@@ -20,6 +20,7 @@ import numpy as np
 from quietblade.errors import ConvergenceError, Notice
 from quietblade.linalg import SparseSolver
 from quietblade.materials import Material
+from quietblade.mesh.model import INTERFACE
 from quietblade.mesh.nodal import NodalBasis
 from quietblade.propulsion.contact import SurfaceCrossing
 from quietblade.propulsion.equilibrium import Equilibrium
@@ -135,7 +136,7 @@ class Structure:
         materials: Mapping[str, Material],
         *,
         clamped: str | None = "root",
-        wetted: str = "wet|excited",
+        wetted: str = INTERFACE,
         spin: Spin = Spin(),  # noqa: B008  # frozen
         guided: Mapping[str, str] | None = None,
         basis: NodalBasis | None = None,

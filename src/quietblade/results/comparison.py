@@ -89,14 +89,15 @@ def _static(first: Summary, second: Summary) -> Iterator[Difference]:
 
 def _modes(configuration: str, first: Summary, second: Summary) -> Iterator[Difference]:
     a, b = ({m.name: m for m in getattr(s.modes, configuration)} for s in (first, second))
+    references = [s.sound_power.level_reference for s in (first, second)]
+    unit = f"dB re {references[0]}"
+    alike = len(set(references)) == 1  # powers and their densities cannot be compared
     for name in dict.fromkeys((*a, *b)):
         left, right = a.get(name), b.get(name)
         yield _difference(f"{configuration} {name} frequency", "Hz", left, right, "frequency_hz")
         yield _difference(f"{configuration} {name} loss factor", "1", left, right, "loss_factor")
-        peak = _difference(
-            f"{configuration} {name} peak level", "dB re 1 pW", left, right, "peak_level_db"
-        )
-        if peak.first is not None or peak.second is not None:
+        peak = _difference(f"{configuration} {name} peak level", unit, left, right, "peak_level_db")
+        if alike and (peak.first is not None or peak.second is not None):
             yield peak
 
 

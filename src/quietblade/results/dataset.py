@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from quietblade.results.files import ResultError
-from quietblade.results.model import Result
+from quietblade.results.model import ConfigurationResult, Result
 from quietblade.results.quantities import CONFIGURATIONS, LABELS, QUANTITIES, Quantity
 from quietblade.results.record import Record
 from quietblade.typing import AnyArray
@@ -95,20 +95,26 @@ def check_registered(tree: xr.DataTree) -> None:
                 )
 
 
-def _datasets(record: Record, path: str) -> Iterator[tuple[str, xr.Dataset]]:
-    yield path or "/", _dataset(record)
+def _datasets(
+    record: Record, path: str, *, random: bool = False
+) -> Iterator[tuple[str, xr.Dataset]]:
+    random = random or (isinstance(record, ConfigurationResult) and record.random)
+    yield path or "/", _dataset(record, random=random)
     for field in fields(record):
         value = getattr(record, field.name)
         if isinstance(value, Record):
-            yield from _datasets(value, f"{path}/{field.name}")
+            yield from _datasets(value, f"{path}/{field.name}", random=random)
         elif isinstance(value, Mapping):
             for name, member in value.items():
                 yield from _datasets(member, f"{path}/{name}")
 
 
-def _dataset(record: Record) -> xr.Dataset:
+def _dataset(record: Record, *, random: bool = False) -> xr.Dataset:
     arrays = record.arrays()
-    variables = {q.name: _variable(q, arrays[q.name]) for q in record.quantities()}
+    variables = {
+        q.name: _variable(q.per_hertz() if random else q, arrays[q.name])
+        for q in record.quantities()
+    }
     dims = {dim for variable in variables.values() for dim in variable.dims}
     labels = {str(dim): list(LABELS[str(dim)]) for dim in sorted(map(str, dims)) if dim in LABELS}
     return xr.Dataset(variables, coords=labels)

@@ -3,6 +3,7 @@
 
 from collections.abc import Iterator
 
+from quietblade.results.excitations import RANDOM, of_signal
 from quietblade.results.summary import ConfigurationSound, PatternSummary, Summary
 from quietblade.results.table import Table, number
 
@@ -44,13 +45,14 @@ def _peak_note(summary: Summary) -> str:
         for member in (far.C0, far.C1)
         if member.largest_condition_error_db is not None
     ]
-    return (
-        "width at half the power; L_W in dB re 1 pW through the sphere, L_S source level in dB re "
-        f"1 uPa m, mean over all directions, of the waves {waves}; efficiency by S2-47; "
+    note = (
+        "width at half the power; L_W in dB re 1 pW through the sphere, L_S source level in "
+        f"dB re 1 uPa m, mean over all directions, of the waves {waves}; efficiency by S2-47; "
         f"{sound.radiation_condition}, kR = {number(sound.kr_min, '.2f')} to "
         f"{number(sound.kr_max, '.2f')}: L_W is wrong by up to "
         f"{number(max(errors, default=None), '.2g')} dB by the estimate for this condition"
     )
+    return of_signal(note, random=sound.signal == RANDOM)
 
 
 def _wave_note(summary: Summary) -> str:
@@ -100,10 +102,11 @@ def _band_rows(summary: Summary) -> Rows:
 def _band_note(summary: Summary) -> str:
     """Say what the levels of the bands are."""
     kind = {"decidecade": "decidecades (base ten)", "third-octave": "third octaves (base two)"}
-    return (
+    note = (
         f"{kind.get(summary.far_field.band_kind, '')} that the frequencies cover; levels of the "
         "mean power in the band; L_W in dB re 1 pW, L_S in dB re 1 uPa m"
     )
+    return of_signal(note, random=summary.sound_power.signal == RANDOM)
 
 
 def _limit_rows(summary: Summary) -> Rows:

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from quietblade.results.claims import judge_claims
+from quietblade.results.excitation_headline import excitation_summaries, transfer_summary
 from quietblade.results.far_headline import far_field_summary, limit_summaries
 from quietblade.results.mode_records import CampbellDiagram
 from quietblade.results.model import ConfigurationResult, Result, path, state
@@ -69,6 +70,8 @@ def summarise(result: Result) -> Summary:
             C0=_shares(configurations.get("C0")), C1=_shares(configurations.get("C1"))
         ),
         moduli=_moduli(result),
+        excitations=excitation_summaries(result),
+        transfer=transfer_summary(result),
         balance=BalanceSummary(
             max_relative_residual=_largest(s.balance_residual for s in spectra),
             max_solver_residual=_largest(s.solver_residual for s in spectra),
@@ -263,6 +266,8 @@ def _sound_power(result: Result) -> SoundPowerSummary:
         frequency_hz=tuple(members[0].spectrum.frequency.tolist()) if members else (),
         C0_db=levels.get("C0", ()),
         C1_db=levels.get("C1", ()),
+        signal=members[0].excitations.signal if members else "",
+        level_reference=members[0].excitations.level_reference if members else "",
         radiation_condition=members[0].radiation_condition if members else "",
         outer_radius_m=members[0].outer_radius if members else None,
         kr_min=float(members[0].kr[0]) if members else None,

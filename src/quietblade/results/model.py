@@ -13,6 +13,7 @@ from typing import Any, ClassVar, TypeVar
 import numpy as np
 
 from quietblade.errors import Notice
+from quietblade.results.excitations import RANDOM, ExcitationTable, TransferTable
 from quietblade.results.mode_records import (
     CampbellDiagram,
     DryModes,
@@ -250,7 +251,7 @@ class ModeTable(Record):
 
 @dataclass(frozen=True, eq=False)
 class Spectrum(Record):
-    """Response to the harmonic excitation. A frequency that could not be solved is NaN.
+    """Response to all excitations. A frequency that could not be solved is NaN.
 
     ``power_by_degree`` has no rows if the multipoles were not computed.
     """
@@ -418,12 +419,19 @@ class ConfigurationResult(Record):
     far_field: FarFieldResult
     directivity: DirectivityResult
     limits: LimitTable
+    excitations: ExcitationTable
+    transfer: TransferTable
     radiation_condition: str
     outer_radius: float
     sound_speed: float
     water_density: float
     excitation_pressure: float
     excitation_area: float
+
+    @property
+    def random(self) -> bool:
+        """Whether powers are spectral densities, per hertz."""
+        return self.excitations.signal == RANDOM
 
     @property
     def kr(self) -> FloatArray:

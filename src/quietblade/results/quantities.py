@@ -71,6 +71,8 @@ DIMENSIONS: Mapping[str, str] = MappingProxyType(
         "modulus": "complex moduli, by region and static shear",
         "sample": "frequencies at which the moduli are tabulated",
         "measured": "measured moduli",
+        "excitation": "loads that set the blade in motion, in the order of the case",
+        "function": "transfer functions, in the order of the case",
         "degree": "degree of the outgoing spherical harmonics, from 0 (monopole)",
         "block": "cells of one kind in one region",
         "region": "regions of the mesh",
@@ -116,6 +118,21 @@ class Quantity:
     equation: str = ""
     kind: Kind = "real"
     reference: str = ""
+
+    def per_hertz(self) -> "Quantity":
+        """Return the quantity as it is of random loads.
+
+        Powers are spectral densities then, and pressures their roots.
+        """
+        units = {"W": "W/Hz", "Pa": "Pa/sqrt(Hz)", "Pa m": "Pa m/sqrt(Hz)"}
+        references = {
+            "1 pW": "1 pW/Hz", "1 uPa": "1 uPa/sqrt(Hz)", "1 uPa m": "1 uPa m/sqrt(Hz)",
+        }  # fmt: skip
+        return replace(
+            self,
+            unit=units.get(self.unit, self.unit),
+            reference=references.get(self.reference, self.reference),
+        )
 
     @property
     def label(self) -> str:
@@ -370,13 +387,52 @@ _GROUPS: dict[str, tuple[Quantity, ...]] = {
         _q("allowed", "", "dB", "limit_row", "level of the limit"),
         _q("excess", "", "dB", "limit_row", "found minus allowed"),
     ),
+    "C*/excitations": (
+        _text("signal", "", "harmonic, or random: then powers are spectral densities, per hertz"),
+        _text("correlation", "", "of random loads: none or full; empty for harmonic ones"),
+        _text("name", "excitation", "name of the load"),
+        _text("kind", "excitation", "pressure, point-force, line-force or root-motion"),
+        _text("unit", "excitation", "unit of its amplitude, or of its spectral density"),
+        _q("size", "", "1", "excitation",
+           "force of a unit amplitude [N]: area [m^2] of a patch, length [m] of a line, 1 at a "
+           "point, NaN of a moved root"),
+        _q("amplitude", "a", "1", "excitation frequency",
+           "peak amplitude, or one-sided spectral density, in the unit named", kind="complex"),
+        _q("radiated", "W", "W", "excitation frequency", "sound power if it acts alone"),
+        _q("injected", "W_in", "W", "excitation frequency", "power that it puts in while all act",
+           "their sum is the injected power"),
+        _q("mean_level", "L_W", "dB", "excitation",
+           "level of its mean sound power over the band if it acts alone", reference="1 pW"),
+    ),
+    "C*/transfer": (
+        _text("functions", "function", "transfer functions that the case asks for"),
+        _q("about", "", "m", "axis", "centre of the root face, to which moments refer"),
+        _q("mobility", "Y", "m/(s N)", "excitation frequency",
+           "drive-point mobility; rad/(s N m) where the root is turned",
+           "Y = i omega b^T x / F^2", kind="complex"),
+        _q("power_per_force", "", "W/N^2", "excitation frequency",
+           "radiated power per mean square force of each load alone", "W / (|F|^2 / 2)"),
+        _q("blocked_force", "F_b", "N", "excitation axis frequency",
+           "force of the blade on its root per unit amplitude of each load", kind="complex"),
+        _q("blocked_moment", "M_b", "N m", "excitation axis frequency",
+           "moment of the blade on its root per unit amplitude of each load", kind="complex"),
+        _q("root_force", "|F_b|", "N", "axis frequency",
+           "peak force of all loads on the root; root of its density [N/sqrt(Hz)] if random"),
+        _q("root_moment", "|M_b|", "N m", "axis frequency",
+           "peak moment of all loads on the root; root of its density if random"),
+        _q("shaft_power", "W_s", "W", "frequency",
+           "power into the shaft that takes the place of the clamp",
+           "W_s = 1/2 Re(v^H Z v), (D + i omega Z) q = F_b"),
+    ),
     "C*": (
         _text("radiation_condition", "", "condition on the outer sphere"),
         _q("outer_radius", "R", "m", "", "radius of the outer sphere"),
         _q("sound_speed", "c", "m/s", "", "speed of sound in the water"),
         _q("water_density", "rho", "kg/m^3", "", "density of the water"),
-        _q("excitation_pressure", "p_exc", "Pa", "", "amplitude of the exciting pressure"),
-        _q("excitation_area", "S_exc", "m^2", "", "area that it acts on"),
+        _q("excitation_pressure", "p_exc", "Pa", "",
+           "amplitude of the first load, if it is a constant harmonic pressure, else NaN"),
+        _q("excitation_area", "S_exc", "m^2", "",
+           "area of the first load, if it is a pressure, else NaN"),
     ),
     "C*/modes": (
         _text("name", "mode", "family (B bending, T torsion, E edgewise, C camber) and number"),
@@ -392,7 +448,7 @@ _GROUPS: dict[str, tuple[Quantity, ...]] = {
            "MAC = |a^T P b|^2 / (a^T P a  b^T P b), P: mass of blade and moved water on C0; the "
            "sections carry their motion along"),
         _q("participation", "Gamma_n", "1", "mode",
-           "square of the exciting pressure's work on the mode, over the largest"),
+           "square of the excitation's work on the mode, over the largest"),
     ),
     "C*/mode_count": (
         _count("counted", "m", "", "modes below the highest frequency by Sturm's count; every one "
@@ -455,7 +511,7 @@ _GROUPS: dict[str, tuple[Quantity, ...]] = {
         _q("power_level", "L_W", "dB", "path frequency", "radiated sound power level",
            "10 log10(W / 1 pW)", reference="1 pW"),
         _q("power_by_degree", "W_l", "W", "degree frequency", "power of one degree"),
-        _q("injected", "W_in", "W", "frequency", "power of the exciting pressure"),
+        _q("injected", "W_in", "W", "frequency", "power of the excitation"),
         _q("dissipated", "W_diss", "W", "frequency",
            "power that materials dissipate, and a stream that damps the blade"),
         _q("balance_residual", "", "1", "frequency", "error of the energy balance",
@@ -465,7 +521,7 @@ _GROUPS: dict[str, tuple[Quantity, ...]] = {
         _q("error_estimate", "", "dB", "frequency",
            "estimated error of the level by the reduced model, NaN in a direct sweep"),
         _q("mobility", "Y", "m/(s N)", "frequency",
-           "mean velocity of the excited area over the exciting force",
+           "mean velocity of the excited area over the exciting force, of the first load alone",
            "W_in = 1/2 |p_exc S_exc|^2 Re Y", kind="complex"),
     ),
     "moduli": (

@@ -167,6 +167,8 @@ class SoundPowerSummary(_Part):
     frequency_hz: tuple[float, ...] = _of("C*/spectrum/frequency")
     C0_db: tuple[Number, ...] = _of("C*/spectrum/power_level", "at rest; empty if not computed")
     C1_db: tuple[Number, ...] = _of("C*/spectrum/power_level", "deformed; empty if not computed")
+    signal: str = _of("C*/excitations/signal")
+    level_reference: str = Field(description="reference of the levels: 1 pW, or 1 pW/Hz if random")
     radiation_condition: str = _of("C*/radiation_condition")
     outer_radius_m: Number = _of("C*/outer_radius")
     kr_min: Number = Field(description="least wave number times outer radius in the band")
@@ -277,6 +279,39 @@ class ModulusSummary(_Part):
     fit_error: Number = _of("moduli/fit_error")
 
 
+class ExcitationSummary(_Part):
+    """One load."""
+
+    name: str = _of("C*/excitations/name")
+    kind: str = _of("C*/excitations/kind")
+    unit: str = _of("C*/excitations/unit")
+    amplitude: Number = _of("C*/excitations/amplitude", "the largest in the band")
+    C0_mean_db: Number = _of("C*/excitations/mean_level", "at rest")
+    C1_mean_db: Number = _of("C*/excitations/mean_level", "deformed")
+
+
+class TransferFigures(_Part):
+    """Transfer functions of one configuration; null or empty where they were not asked for."""
+
+    largest_mobility: dict[str, Number] = _of("C*/transfer/mobility", "largest by load")
+    largest_power_per_force: dict[str, Number] = _of(
+        "C*/transfer/power_per_force", "largest by load"
+    )
+    largest_root_force_n: Number = _of("C*/transfer/root_force", "largest over the band")
+    largest_root_moment_nm: Number = _of("C*/transfer/root_moment", "largest over the band")
+    mean_shaft_db: Number = Field(
+        description="level of the mean power into the shaft over the band [dB re 1 pW, or 1 pW/Hz]"
+    )
+
+
+class TransferSummary(_Part):
+    """Transfer functions of both configurations."""
+
+    functions: tuple[str, ...] = _of("C*/transfer/functions")
+    C0: TransferFigures = Field(description="at rest")
+    C1: TransferFigures = Field(description="deformed by the steady load")
+
+
 class BalanceSummary(_Part):
     """How well the energy balances, over both configurations."""
 
@@ -343,6 +378,8 @@ class Summary(_Part):
     moduli: tuple[ModulusSummary, ...] = Field(
         description="complex moduli that are more than a constant loss factor"
     )
+    excitations: tuple[ExcitationSummary, ...] = Field(description="loads, as in the case")
+    transfer: TransferSummary
     balance: BalanceSummary
     mesh: MeshSummary
     unknowns: int = Field(description="free unknowns of step 2")

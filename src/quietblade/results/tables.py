@@ -3,6 +3,7 @@
 
 from collections.abc import Iterable, Iterator, Mapping
 
+from quietblade.results.excitation_tables import excitation_table, transfer_table
 from quietblade.results.far_tables import far_field_tables
 from quietblade.results.summary import ModeSummary, Summary
 from quietblade.results.table import Table, number
@@ -21,6 +22,8 @@ def summary_tables(summary: Summary) -> tuple[Table, ...]:
         _crossings(summary),
         _power_paths(summary),
         _moduli(summary),
+        excitation_table(summary),
+        transfer_table(summary),
         _claims(summary),
         _checks(summary),
         _run(summary),
@@ -139,7 +142,8 @@ def _modes(summary: Summary) -> Table:
     note = ""
     if sound.radiation_condition:
         note = (
-            f"levels of the peaks in dB re 1 pW through the sphere; {sound.radiation_condition}, "
+            f"levels of the peaks in dB re {sound.level_reference} through the sphere; "
+            f"{sound.radiation_condition}, "
             f"R = {number(sound.outer_radius_m)} m, "
             f"kR = {number(sound.kr_min, '.2f')} to {number(sound.kr_max, '.2f')}; level of the "
             f"mean power over the band C0 {number(sound.C0_mean_db, '.1f')}, "

@@ -11,7 +11,6 @@ from quietblade.study.sound import Sound
 from quietblade.study.vibration import Vibration
 from quietblade.typing import FloatArray
 from quietblade.vibroacoustics.bands import band_mean
-from quietblade.vibroacoustics.power import dissipated_by_region, radiated_power
 
 WATER = "water"
 """Name of what is radiated."""
@@ -44,9 +43,8 @@ def _peaks(vibration: Vibration, sound: Sound, power: FloatArray) -> tuple[Float
     if vibration.sweep is None:
         return sound.peaks.frequency, power[:, np.isin(sound.frequency, sound.peaks.frequency)]
     model, omega = vibration.sweep.model, 2.0 * np.pi * sound.peaks.frequency
-    operators, response = model.reduced_operators, model.coordinates(omega)
-    lost = dissipated_by_region(operators, omega, response)
-    sinks = _by_region(lost, radiated_power(operators, omega, response))
+    combined = vibration.excited.combined(model, omega)
+    sinks = _by_region(combined.lost, combined.radiated)
     return sound.peaks.frequency, np.array(list(sinks.values()))
 
 

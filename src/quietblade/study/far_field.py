@@ -154,6 +154,8 @@ def _exact(vibration: Vibration) -> bool:
 def _outside(vibration: Vibration, samples: Samples) -> Outside:
     operators, omega, columns = vibration.operators, samples.omega, samples.columns
     parts, plane = [], np.zeros(len(omega))
+    root = vibration.excited.root
+    carried = None if root is None else root.carried
     for response in samples.responses:
         if _exact(vibration):
             waves = sphere_waves(operators, omega, response, columns)
@@ -161,7 +163,7 @@ def _outside(vibration: Vibration, samples: Samples) -> Outside:
             waves = samples.sources.multipoles(omega, response)
         one = np.ones(len(omega))
         plane += 1.0 / radiation_efficiency(
-            operators, vibration.normal_motion, omega, response, one, columns
+            operators, vibration.normal_motion, omega, response, one, columns, carried
         )
         parts.append(waves)
     power = np.asarray(sum(part.power for part in parts))

@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Fields of a run as VTU files."""
 
+import re
 from collections.abc import Iterator
 
 import numpy as np
 
 from quietblade.mesh import CellBlock, Mesh
+from quietblade.mesh.model import EXCITED
 from quietblade.propulsion.stress import RegionStress
 from quietblade.results.store import RunFolder
 from quietblade.results.vtk import PointField, write_fields
@@ -25,7 +27,9 @@ def write_static_fields(mesh: Mesh, statics: Statics, folder: RunFolder) -> None
     for region in statics.stress.regions.values():
         fields += _stress_fields(region, len(mesh.nodes))
     cells = {name: blocks for name, blocks in mesh.cells.items() if name != "water"}
-    cells["excited"] = (CellBlock("triangle6", mesh.faces["excited"]),)
+    excited = [faces for name, faces in mesh.faces.items() if re.fullmatch(EXCITED, name)]
+    if excited:
+        cells["excited"] = (CellBlock("triangle6", np.concatenate(excited)),)
     write_fields(folder.static_fields, mesh.nodes, cells, fields)
 
 
@@ -82,7 +86,8 @@ def _responses(mesh: Mesh, vibration: Vibration, sound: Sound) -> Iterator[Point
     for frequency, solution in zip(sound.snapshots, sound.solutions, strict=True):
         label = f"{frequency:.2f} Hz"
         omega = 2.0 * np.pi * float(frequency)
-        (shape,) = nodal_shapes(mesh, vibration.operators, solution[None])
+        root = vibration.excited.root
+        (shape,) = nodal_shapes(mesh, vibration.operators, solution[None], root)
         yield PointField("response", _on_solid(mesh, shape), label)
         yield PointField("sound_pressure", _sound_pressure(mesh, vibration, omega, solution), label)
 

@@ -76,12 +76,10 @@ def _load(case: Case, blade: Blade, number: int) -> Load:
                 )
                 raise case.invalid(finding) from error
         case PointForceWords():
-            x, y, z = _on_face(blade, words.face, np.array([words.at]))[0].tolist()
+            x, y, z = on_face(blade, words.face, np.array([words.at]))[0].tolist()
             return PointForce((x, y, z), words.force, _tolerance(blade))
         case LineForceWords():
-            share = np.linspace(0.0, 1.0, _CORNERS)[:, None]
-            places = (1.0 - share) * np.array(words.start) + share * np.array(words.end)
-            path = _on_face(blade, words.face, places)
+            path = line_on_face(blade, words.face, words.start, words.end)
             return LineForce(path, np.array(words.force), _tolerance(blade))
         case GravityWords():
             return Gravity(words.acceleration)
@@ -117,7 +115,15 @@ def read_pressures(file: Path) -> PressureTable:
     return PressureTable(s, xi, upper, lower)
 
 
-def _on_face(blade: Blade, face: str, places: FloatArray) -> FloatArray:
+def line_on_face(
+    blade: Blade, face: str, start: tuple[float, float], end: tuple[float, float]
+) -> FloatArray:
+    """Corners (n, 3) of a line on a face that is straight in the planform [m]."""
+    share = np.linspace(0.0, 1.0, _CORNERS)[:, None]
+    return on_face(blade, face, (1.0 - share) * np.array(start) + share * np.array(end))
+
+
+def on_face(blade: Blade, face: str, places: FloatArray) -> FloatArray:
     """Points (n, 3) of a face at span and chord fractions (n, 2)."""
     s, xi = places.T
     height = blade.face_height(1 if face == "upper" else -1, s, xi)

@@ -90,7 +90,7 @@ def _mode_table(
 ) -> model.ModeTable:
     """Real modes; those in the band with the loss of the damped mode that belongs to them."""
     modes, count = vibration.modes, len(vibration.modes.frequency)
-    work = np.abs(modes.vectors @ vibration.load)
+    work = vibration.excited.modal_work(vibration.operators, modes.vectors, modes.frequency)
     partner, likeness = ("",) * count, np.full(count, np.nan)
     if found is not None and other is not None:
         names = other.naming.name
@@ -141,10 +141,14 @@ def _response(vibration: Vibration, sound: Sound) -> tuple[FloatArray, ComplexAr
     """Frequencies [Hz] at which the response matters, and the response there (k, n)."""
     if vibration.sweep is None or sound.peaks is None:
         return sound.snapshots, sound.solutions
-    frequency = sound.peaks.frequency
-    if len(frequency) == 0:  # heavily damped modes make no peaks
+    frequency = sound.peaks.frequency if len(sound.waves) == 1 else sound.snapshots
+    if (
+        len(frequency) == 0
+    ):  # independent loads have no common response, and heavily damped modes make no peaks
         return frequency, np.zeros((0, vibration.operators.size), dtype=complex)
-    return frequency, vibration.sweep.model.solution(2.0 * np.pi * frequency)
+    reduced = vibration.sweep.model
+    together = vibration.excited.combined(reduced, 2.0 * np.pi * frequency)
+    return frequency, together.responses[0] @ reduced.columns()
 
 
 def _dry_modes(case: Case, mesh: Mesh, vibration: Vibration) -> records.DryModes:

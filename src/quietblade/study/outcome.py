@@ -30,9 +30,17 @@ from quietblade.propulsion.stress import StressReport
 from quietblade.results import model
 from quietblade.study import far_outcome
 from quietblade.study.dissipation import dissipation
+from quietblade.study.excitation_outcome import (
+    excitation_table,
+    first_area,
+    first_pressure,
+    outgoing_by_degree,
+    transfer_table,
+)
 from quietblade.study.mode_tables import ModeTables
 from quietblade.study.sound import Sound
 from quietblade.study.statics import Statics
+from quietblade.study.transfer import drive_point_mobility
 from quietblade.study.translate import environment
 from quietblade.study.translate import inflow as inflow_of
 from quietblade.study.vibration import Vibration
@@ -253,7 +261,7 @@ def configuration_result(
         loss_shares=tables.losses,
         participation=tables.participation,
         dry_modes=tables.dry,
-        spectrum=_spectrum(case, vibration, sound),
+        spectrum=_spectrum(vibration, sound),
         dissipation=dissipation(vibration, sound),
         sweep=_sweep(case, sound),
         peaks=_peaks(sound),
@@ -261,27 +269,29 @@ def configuration_result(
         far_field=far_outcome.far_field_result(operators.radius, sound.far),
         directivity=far_outcome.directivity_result(case, sound.far),
         limits=far_outcome.limit_table(case, sound),
+        excitations=excitation_table(vibration.excited, sound),
+        transfer=transfer_table(sound.transfer),
         radiation_condition=operators.condition.name,
         outer_radius=operators.radius,
         sound_speed=operators.sound_speed,
         water_density=operators.density,
-        excitation_pressure=case.excitation.pressure,
-        excitation_area=vibration.area,
+        excitation_pressure=first_pressure(case),
+        excitation_area=first_area(vibration.excited),
     )
 
 
-def _spectrum(case: Case, vibration: Vibration, sound: Sound) -> model.Spectrum:
-    budget, waves = sound.budget, sound.multipoles
-    force = case.excitation.pressure * vibration.area
+def _spectrum(vibration: Vibration, sound: Sound) -> model.Spectrum:
+    budget, omega = sound.budget, 2.0 * np.pi * sound.frequency
+    outgoing = outgoing_by_degree(sound.waves)
     return model.Spectrum(
         frequency=sound.frequency,
-        power=np.array([budget.radiated, budget.surface, waves.power]),
-        power_by_degree=waves.power_by_degree.T,
+        power=np.array([budget.radiated, budget.surface, outgoing.sum(axis=0)]),
+        power_by_degree=outgoing,
         injected=budget.injected,
         dissipated=budget.dissipated,
         solver_residual=sound.residual,
         error_estimate=sound.estimate,
-        mobility=2j * np.pi * sound.frequency * sound.work / force**2,
+        mobility=drive_point_mobility(vibration.excited, omega, sound.loads.work)[:, 0],
     )
 
 

@@ -15,6 +15,7 @@ from quietblade.study import solids, translate
 from quietblade.study.limits import far_field_findings, limit_notices, limits
 from quietblade.study.loads import steady_loads
 from quietblade.study.losses import Modulus, moduli, moduli_notices
+from quietblade.study.spectra import spectra
 from quietblade.typing import FloatArray
 
 _MOST_FACES = 400_000
@@ -75,12 +76,13 @@ def preflight(case: Case) -> Preflight:
     Raises
     ------
     InvalidCaseError
-        The blade, its film, a load, a limit, a point or a model of the loss is impossible, the
-        sphere does not enclose the blade with the stated gap, or the mesh size is absurd; each
-        with file, line, key, value and remedy.
+        The blade, its film, a load, its table, a limit, a point or a model of the loss is
+        impossible, the sphere does not enclose the blade with the stated gap, or the mesh size is
+        absurd; each with file, line, key, value and remedy.
     """
     blade = translate.build_blade(case)
     steady_loads(case, blade)
+    spectra(case)
     held = limits(case)
     complex_moduli = moduli(case)
     centre, radius = translate.sphere(case)

@@ -10,11 +10,14 @@ from quietblade.case import Case
 from quietblade.errors import Notice
 from quietblade.linalg import SolverReport
 from quietblade.study.far_field import FarField, Samples, solve_far_field
+from quietblade.study.transfer import LoadPowers, Transfer, solve_transfer
 from quietblade.study.vibration import Vibration, symmetric_solver
 from quietblade.typing import ComplexArray, FloatArray, IntArray, Progress
+from quietblade.vibroacoustics.combined import Combined
 from quietblade.vibroacoustics.multipoles import Multipoles
+from quietblade.vibroacoustics.operators import Operators
 from quietblade.vibroacoustics.peaks import Peaks, find_peaks, peaks_on_grid
-from quietblade.vibroacoustics.power import PowerBudget, dissipated_by_region, power_budget
+from quietblade.vibroacoustics.power import PowerBudget
 from quietblade.vibroacoustics.radiation_check import radiation_notices
 from quietblade.vibroacoustics.reduced import Certificate
 from quietblade.vibroacoustics.sweep import solve_response
@@ -34,16 +37,20 @@ class Sound:
         Injected, radiated and dissipated power [W].
     lost : mapping of str to (f,) float array
         Dissipated power by lossy part [W].
-    work : (f,) complex array
-        b^T x [J], for the mobility.
-    multipoles : Multipoles
-        Outgoing waves by the Kirchhoff-Helmholtz integral.
+    loads : LoadPowers
+        What each load does.
+    transfer : Transfer or None
+        Transfer functions, if the case asks for them.
+    waves : tuple of Multipoles
+        Outgoing waves by the Kirchhoff-Helmholtz integral, of each independent part of the
+        excitation; their powers add.
     residual : (f,) float array
         ``||A x - b|| / ||b||`` of the whole system, nan in a reduced sweep.
     estimate : (f,) float array
         Estimated error of the power level by the reduced model [dB], nan in a direct sweep.
     snapshots : (k,) float array
-        Frequencies near the damped modes [Hz], with ``solutions`` (k, n) there.
+        Frequencies near the damped modes [Hz], with ``solutions`` (k, n) there; none if the loads
+        are independent, which have no common response.
     solutions : (k, n) complex array
     report : SolverReport
         What the solvers did in the sweep.
@@ -62,8 +69,9 @@ class Sound:
     frequency: FloatArray
     budget: PowerBudget
     lost: Mapping[str, FloatArray]
-    work: ComplexArray
-    multipoles: Multipoles
+    loads: LoadPowers
+    transfer: Transfer | None
+    waves: tuple[Multipoles, ...]
     residual: FloatArray
     estimate: FloatArray
     snapshots: FloatArray
@@ -89,25 +97,27 @@ def _direct(case: Case, vibration: Vibration, frequency: FloatArray, progress: P
     """One factorisation a frequency."""
     operators = vibration.operators
     solver = symmetric_solver(case)
-    response = solve_response(
-        operators, frequency, vibration.load, solver=solver, progress=progress
+    excited, count = vibration.excited, len(vibration.excited.drives)
+    response = solve_response(operators, frequency, excited.every, solver=solver, progress=progress)
+    every = response.solution
+    assert every is not None  # nothing observed: the solutions are kept
+    combined = Combined(
+        operators, response.omega, every[:, :count], excited.vectors, excited.parts(frequency)
     )
-    assert response.solution is not None  # nothing observed: the solutions are kept
-    nearest = _nearest(frequency, vibration.damped.frequency)
-    waves = vibration.sources.multipoles(response.omega, response.solution)
-    budget = power_budget(operators, response.omega, response.solution, vibration.load)
-    solved = waves.only(np.isfinite(budget.radiated))
+    sources, budget = vibration.sources, combined.budget
+    waves = tuple(sources.multipoles(response.omega, x) for x in combined.responses)
+    solved = tuple(part.only(np.isfinite(budget.radiated)) for part in waves)
     peaks = peaks_on_grid(frequency, budget.radiated)
     asked = _patterns(case, peaks)
     there = np.searchsorted(frequency, asked)
-    sources = vibration.sources
     far = solve_far_field(
         case,
         vibration,
-        Samples(response.omega, (response.solution,), sources),
-        Samples(response.omega[there], (response.solution[there],), sources),
+        Samples(response.omega, tuple(combined.responses), sources),
+        Samples(response.omega[there], tuple(combined.responses[:, there]), sources),
         len(peaks.frequency),
     )
+    snapshots = _snapshots(_nearest(frequency, vibration.damped.frequency), combined)
     failed = [
         Notice(f"sweep {vibration.name}", f"no solution at {f:.6g} Hz: {why}")
         for f, why in response.failures.items()
@@ -116,20 +126,20 @@ def _direct(case: Case, vibration: Vibration, frequency: FloatArray, progress: P
         name=vibration.name,
         frequency=frequency,
         budget=budget,
-        lost=dissipated_by_region(operators, response.omega, response.solution),
-        work=np.asarray(response.solution @ vibration.load),
-        multipoles=waves,
+        lost=combined.lost,
+        loads=LoadPowers.of(combined),
+        transfer=solve_transfer(case, excited, combined, every[..., operators.blocks.held]),
+        waves=waves,
         residual=response.residual,
         estimate=np.full(frequency.shape, np.nan),
-        snapshots=frequency[nearest],
-        solutions=response.solution[nearest],
+        snapshots=frequency[snapshots],
+        solutions=combined.responses[0][snapshots],
         report=response.report,
         peaks=peaks,
         far=far,
         failures=response.failures,
         notices=(
-            *solved.notices(),
-            *radiation_notices(operators.condition, operators.radius, solved),
+            *_wave_notices(operators, solved),
             *far.notices,
             *_coarse_step(vibration, frequency),
             *failed,
@@ -143,40 +153,42 @@ def _reduced(case: Case, vibration: Vibration, frequency: FloatArray, progress: 
     assert sweep is not None
     operators, model, omega = vibration.operators, sweep.model, 2.0 * np.pi * frequency
     progress("sweep", 0.1, f"{len(frequency)} frequencies on {model.size} columns")
-    columns, y = model.columns(), model.coordinates(omega)
+    excited, columns = vibration.excited, model.columns()
     sources = vibration.sources.on(columns)
-    waves = sources.multipoles(omega, y)
+    combined = excited.combined(model, omega)
+    waves = tuple(sources.multipoles(omega, y) for y in combined.responses)
     progress("sweep", 0.6, "peaks")
-    peaks = find_peaks(sweep, case.acoustics.band)
+    peaks = find_peaks(sweep, case.acoustics.band, lambda at: excited.combined(model, at).radiated)
     progress("sweep", 0.8, "far field")
     asked = 2.0 * np.pi * _patterns(case, peaks)
-    at_asked = model.coordinates(asked) if len(asked) else y[:0]
+    at_asked = excited.combined(model, asked).responses if len(asked) else combined.responses[:, :0]
     far = solve_far_field(
         case,
         vibration,
-        Samples(omega, (y,), sources, columns),
-        Samples(asked, (at_asked,), sources, columns),
+        Samples(omega, tuple(combined.responses), sources, columns),
+        Samples(asked, tuple(at_asked), sources, columns),
         len(peaks.frequency),
     )
-    nearest = _nearest(frequency, vibration.damped.frequency)
+    _, _, held = model.space.places
+    snapshots = _snapshots(_nearest(frequency, vibration.damped.frequency), combined)
     return Sound(
         name=vibration.name,
         frequency=frequency,
-        budget=model.budget(omega),
-        lost=dissipated_by_region(model.reduced_operators, omega, y),
-        work=model.work(omega),
-        multipoles=waves,
+        budget=combined.budget,
+        lost=combined.lost,
+        loads=LoadPowers.of(combined),
+        transfer=solve_transfer(case, excited, combined, model.coordinates(omega)[..., held]),
+        waves=waves,
         residual=np.full(frequency.shape, np.nan),
         estimate=sweep.estimate(frequency),
-        snapshots=frequency[nearest],
-        solutions=model.solution(omega[nearest]),
+        snapshots=frequency[snapshots],
+        solutions=combined.responses[0][snapshots] @ columns,
         report=sweep.report,
         peaks=peaks,
         far=far,
         certificate=sweep.certificate,
         notices=(
-            *waves.notices(),
-            *radiation_notices(operators.condition, operators.radius, waves),
+            *_wave_notices(operators, waves),
             *far.notices,
         ),
     )
@@ -191,6 +203,24 @@ def _nearest(frequency: FloatArray, wanted: FloatArray) -> IntArray:
     """Places of the frequencies nearest to those wanted inside the band, each once."""
     inside = wanted[(wanted >= frequency[0]) & (wanted <= frequency[-1])]
     return np.unique([int(np.argmin(np.abs(frequency - f))) for f in inside]).astype(np.int64)
+
+
+def _snapshots(nearest: IntArray, combined: Combined) -> IntArray:
+    """Places of the responses to be kept; loads that are independent have none in common."""
+    return nearest if len(combined.parts) == 1 else nearest[:0]
+
+
+def _wave_notices(operators: Operators, waves: tuple[Multipoles, ...]) -> list[Notice]:
+    """Notices on the outgoing waves of all parts, each once."""
+    found = [
+        notice
+        for part in waves
+        for notice in (
+            *part.notices(),
+            *radiation_notices(operators.condition, operators.radius, part),
+        )
+    ]
+    return list(dict.fromkeys(found))
 
 
 def _coarse_step(vibration: Vibration, frequency: FloatArray) -> list[Notice]:

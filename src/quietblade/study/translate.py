@@ -13,6 +13,7 @@ import numpy as np
 
 from quietblade import geometry
 from quietblade.case import Case, Finding
+from quietblade.case.excitation import PatchWords
 from quietblade.case.spans import (
     ConstantSpan,
     FormulaSpan,
@@ -156,12 +157,15 @@ def mesh_spec(case: Case) -> "MeshSpec":
     from quietblade.mesh import MeshSpec, Patch
 
     centre, radius = sphere(case)
-    side = 1 if case.excitation.side == "upper" else -1
     return MeshSpec(
         size=case.mesh.size,
         centre=(float(centre[0]), float(centre[1]), float(centre[2])),
         radius=radius,
-        patch=Patch(side, case.excitation.span, case.excitation.chord),
+        patches=tuple(
+            Patch(1 if words.side == "upper" else -1, words.span, words.chord)
+            for words in case.excitation
+            if isinstance(words, PatchWords)
+        ),
         water_size=water_size(case),
     )
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Step 2 of a case: wet modes and sound of the blade about one configuration."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import ngsolve as ngs
 import numpy as np
@@ -14,16 +14,15 @@ from quietblade.linalg import Precision, SolverChain, SolverReport, make_solver
 from quietblade.mesh import Mesh
 from quietblade.mesh.model import INTERFACE
 from quietblade.mesh.motion import MeshMotion
-from quietblade.mesh.surface import SurfaceQuadrature
 from quietblade.propulsion.structure import Structure, StructureState
 from quietblade.propulsion.tangent import Tangent, compute_tangent
 from quietblade.study import losses, translate
+from quietblade.study.excitations import Excited, excite, needs_root, root_centre
 from quietblade.study.frames import SectionFrames
 from quietblade.study.statics import Statics
 from quietblade.study.stream import with_stream
 from quietblade.typing import AnyArray, FloatArray, Progress
 from quietblade.vibroacoustics.complex_modes import ComplexModes, complex_modes
-from quietblade.vibroacoustics.excitation import pressure_force
 from quietblade.vibroacoustics.fluid import normal_motion_matrix
 from quietblade.vibroacoustics.grid import refined_grid
 from quietblade.vibroacoustics.modes import WetModes, wet_modes
@@ -31,6 +30,7 @@ from quietblade.vibroacoustics.multipoles import CLOSED_SURFACE, SurfaceSources
 from quietblade.vibroacoustics.naming import Naming, name_modes
 from quietblade.vibroacoustics.operators import CLAMPED, Operators, build_operators
 from quietblade.vibroacoustics.reduced import ReducedSweep, reduce_system
+from quietblade.vibroacoustics.root import RootedSystem, add_root
 
 ABOVE_BAND = 1.2
 """Wet modes are sought up to this multiple of the band's upper end, so that a mode that the
@@ -50,10 +50,8 @@ class Vibration:
         ``C0`` or ``C1``.
     operators : Operators
         Matrices of eq. (7).
-    load : (n,) float array
-        Right-hand side of the excitation [N].
-    area : float
-        Area of the excited patch in this configuration [m2].
+    excited : Excited
+        Loads in this configuration.
     sources : SurfaceSources
         For the outgoing waves.
     normal_motion : csr_matrix
@@ -82,8 +80,7 @@ class Vibration:
 
     name: str
     operators: Operators
-    load: FloatArray
-    area: float
+    excited: Excited
     sources: SurfaceSources
     normal_motion: csr_matrix
     positions: FloatArray
@@ -124,6 +121,30 @@ def linear_problem(
     return tangent, operators
 
 
+def _moving_root(
+    case: Case,
+    mesh: Mesh,
+    structure: Structure,
+    state: StructureState,
+    tangent: Tangent,
+    operators: Operators,
+    field: ngs.GridFunction | None,
+) -> RootedSystem:
+    """Let the clamped root of a system move."""
+    with ngs.TaskManager():
+        return add_root(
+            operators,
+            mesh.fem,
+            mesh.basis,
+            stiffness=tangent.stiffness(case.acoustics.tangent),
+            mass=tangent.mass,
+            loss=losses.loss_parts(case, losses.moduli(case), structure, state, tangent),
+            water=translate.water(case),
+            about=root_centre(mesh),
+            motion=field,
+        )
+
+
 def solve_vibration(
     case: Case,
     blade: Blade,
@@ -143,17 +164,22 @@ def solve_vibration(
     positions = mesh.nodes if motion is None else mesh.nodes + motion.displacement
     frames = SectionFrames.of(blade, mesh, None if motion is None else flow.sections)
     tangent, operators = linear_problem(case, mesh, structure, state, field)
+    root = None
+    if needs_root(case):
+        root = _moving_root(case, mesh, structure, state, tangent, operators, field)
+        operators = root.operators
     slow: tuple[Notice, ...] = ()
     if case.acoustics.flow_damping:
         operators, slow = with_stream(case, mesh, operators, flow, positions, frames)
+        root = None if root is None else replace(root, operators=operators)
     with ngs.TaskManager():
-        force = pressure_force(mesh.fem, case.excitation.pressure, motion=field)
-        sources = SurfaceSources.of(mesh.fem, mesh.basis, operators, motion=field)
+        excited = excite(case, blade, mesh, positions, operators, root, field)
+        carried = None if root is None else root.carried
+        sources = SurfaceSources.of(mesh.fem, mesh.basis, operators, motion=field, carried=carried)
         normal_motion = normal_motion_matrix(mesh.fem, CLOSED_SURFACE, field)
     progress(name, 0.2, "matrices assembled")
     exact = symmetric_solver(case, precision="double")
     low, high = case.acoustics.band
-    load = operators.right_hand_side(force)
     modes = wet_modes(
         operators, ABOVE_BAND * high, moduli_at=0.5 * (low + high), solver=exact, progress=progress
     )
@@ -162,8 +188,9 @@ def solve_vibration(
     if case.acoustics.sweep == "reduced":
         sweep = reduce_system(
             operators,
-            load,
+            excited.every,
             translate.base_frequencies(case),
+            power=excited.powers,
             tolerance=case.acoustics.accuracy,
             solver=symmetric_solver(case),
             progress=progress,
@@ -183,8 +210,7 @@ def solve_vibration(
     return Vibration(
         name=name,
         operators=operators,
-        load=load,
-        area=_area(mesh, positions),
+        excited=excited,
         sources=sources,
         normal_motion=normal_motion,
         positions=positions,
@@ -244,10 +270,17 @@ def displacement_field(mesh: Mesh, motion: MeshMotion) -> ngs.GridFunction:
     return field
 
 
-def nodal_shapes(mesh: Mesh, operators: Operators, vectors: AnyArray) -> AnyArray:
-    """Displacement of all nodes, (m, nodes, 3), from vectors (m, n) of free unknowns."""
+def nodal_shapes(
+    mesh: Mesh, operators: Operators, vectors: AnyArray, root: RootedSystem | None = None
+) -> AnyArray:
+    """Displacement of all nodes, (m, nodes, 3), from vectors (m, n) of free unknowns.
+
+    Those of a root that moves come from its motion.
+    """
     full = np.zeros((len(vectors), 3 * mesh.basis.ndof), dtype=vectors.dtype)
     full[:, operators.free[operators.blocks.u]] = vectors[:, operators.blocks.u]
+    if root is not None:
+        full += (root.carried @ vectors.T).T
     return np.array([mesh.basis.to_values(row) for row in full])
 
 
@@ -263,11 +296,6 @@ def nodal_masses(mesh: Mesh, operators: Operators) -> FloatArray:
     to_unknowns = basis.interpolation[last[kept]]
     inertia = mass[kept][:, kept] @ to_unknowns
     return np.asarray(to_unknowns.multiply(inertia).sum(axis=0)).ravel()
-
-
-def _area(mesh: Mesh, positions: FloatArray) -> float:
-    surface = SurfaceQuadrature(mesh.nodes, mesh.faces["excited"])
-    return float(np.linalg.norm(surface.area_vectors(positions), axis=-1).sum())
 
 
 def coriolis(rotation: float, modes: WetModes) -> tuple[Notice, ...]:

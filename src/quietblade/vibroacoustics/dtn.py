@@ -17,6 +17,7 @@ from ngsolve.comp import IntegrationRuleSpaceSurface
 from scipy.sparse import csr_matrix
 
 from quietblade.mesh.assembly import csr_of
+from quietblade.mesh.model import INTERFACE
 from quietblade.typing import ComplexArray, FloatArray
 from quietblade.vibroacoustics.fluid import Water, boundary, potential_space
 from quietblade.vibroacoustics.harmonics import solid_harmonics
@@ -165,7 +166,7 @@ def fitted_dtn(
     radius: float,
     accuracy: float = 1e-3,
     motion: ngs.GridFunction | None = None,
-    wetted: str = "wet|excited|root",
+    wetted: str = f"{INTERFACE}|root",
     outer: str = "outer",
 ) -> Dtn:
     """Condition with the degree that a body, its sphere and a frequency need (`dtn_degree`).

@@ -115,6 +115,40 @@ def spectral_matrix(
     return np.asarray(root[:, :, None] * root[:, None, :])
 
 
+def independent_parts(
+    excitations: Sequence[Excitation], frequency: FloatArray, correlation: Correlation | None
+) -> ComplexArray:
+    """Harmonic amplitudes whose powers add up to those of all excitations, (j, f, k).
+
+    Harmonic loads are one part.  Random ones have the densities of harmonic loads with the peak
+    amplitudes sqrt(2 G) [unit / sqrt(Hz)]: each a part of its own if they are independent, all one
+    part if they are in phase (theory: S2-77).
+
+    Parameters
+    ----------
+    excitations : sequence of Excitation
+        Their amplitudes are densities, if a correlation is given.
+    frequency : (f,) array
+        [Hz]
+    correlation : {"none", "full"} or None
+        None for harmonic loads.
+
+    Raises
+    ------
+    ValueError
+        If a density is negative or complex.
+    """
+    amplitude = harmonic_amplitudes(excitations, frequency)
+    if correlation is None:
+        return amplitude[None]
+    if np.any(amplitude.real < 0.0) or np.any(amplitude.imag != 0.0):
+        raise ValueError("a power spectral density must be real and not negative")
+    peak = np.sqrt(2.0 * amplitude)
+    if correlation == "full":
+        return peak[None]
+    return np.asarray(peak[None] * np.eye(len(excitations))[:, None, :])
+
+
 def response_density(transfer: ComplexArray, density: ComplexArray) -> FloatArray:
     """Power spectral density of a response, sum_jk H_j G_jk H_k^* (theory: S2-77).
 

@@ -16,13 +16,14 @@ import numpy as np
 from scipy.sparse import csr_matrix
 
 from quietblade.errors import Notice
+from quietblade.mesh.model import INTERFACE
 from quietblade.mesh.nodal import NodalBasis
 from quietblade.typing import AnyArray, ComplexArray, FloatArray, IntArray
 from quietblade.vibroacoustics.fluid import Water, coupling_matrix
 from quietblade.vibroacoustics.harmonics import outgoing, radial_factors, solid_harmonics
 from quietblade.vibroacoustics.operators import Operators, product_space
 
-CLOSED_SURFACE = "wet|excited|root"
+CLOSED_SURFACE = f"{INTERFACE}|root"
 
 
 @dataclass(frozen=True)

@@ -38,7 +38,11 @@ class Peaks:
     estimate: FloatArray
 
 
-def find_peaks(sweep: ReducedSweep, band: tuple[float, float]) -> Peaks:
+def find_peaks(
+    sweep: ReducedSweep,
+    band: tuple[float, float],
+    radiated: Callable[[FloatArray], FloatArray] | None = None,
+) -> Peaks:
     """Find the maxima of the radiated power that the model's damped modes make in a band [Hz].
 
     Parameters
@@ -47,11 +51,15 @@ def find_peaks(sweep: ReducedSweep, band: tuple[float, float]) -> Peaks:
         Certified model.
     band : (float, float)
         Lowest and highest frequency [Hz].
+    radiated : callable, optional
+        Radiated power (f,) at angular frequencies (f,) [rad/s]; that of the model if left out,
+        which then has one load.
     """
     model = sweep.model
+    powers = model.radiated if radiated is None else radiated
 
     def power(frequency: float) -> float:
-        return float(model.radiated(np.array([2.0 * np.pi * frequency]))[0])
+        return float(powers(np.array([2.0 * np.pi * frequency]))[0])
 
     found: list[float] = []
     for resonance, loss in zip(*model.light_modes(band), strict=True):

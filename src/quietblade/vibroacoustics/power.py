@@ -73,6 +73,15 @@ class PowerBudget:
     surface: FloatArray
     dissipated: FloatArray
 
+    def __add__(self, other: "PowerBudget") -> "PowerBudget":
+        """Powers of two independent responses together."""
+        return PowerBudget(
+            self.injected + other.injected,
+            self.radiated + other.radiated,
+            self.surface + other.surface,
+            self.dissipated + other.dissipated,
+        )
+
     @property
     def residual(self) -> FloatArray:
         """|injected - radiated - dissipated| / |injected|, zero up to the solver's accuracy."""
@@ -156,6 +165,7 @@ def radiation_efficiency(
     response: ComplexArray,
     power: FloatArray,
     columns: AnyArray | None = None,
+    carried: csr_matrix | None = None,
 ) -> FloatArray:
     """Radiated power over that of a piston of the same motion (theory: S2-47).
 
@@ -170,16 +180,19 @@ def radiation_efficiency(
         Radiated power by any path [W].
     columns : (k, n) array or None
         If the response are coordinates (..., k): the vectors that they are factors of.
+    carried : (V.ndof, n) csr_matrix or None
+        What a moving root does to the displacement of its nodes, `RootedSystem.carried`.
     """
     u = operators.blocks.u
-    own = operators.free[u]
-    form: Matrix = csr_matrix(normal_motion[own][:, own])
-    moved = response
-    if columns is None:
-        moved = response[..., u]
-    else:
-        form = columns[:, u] @ (form @ columns[:, u].T)
-    squared = _real_form(form, moved, moved)
+    places = operators.free[u], u
+    shape = normal_motion.shape[0], operators.size
+    moving = csr_matrix((np.ones(len(u)), places), shape=shape)
+    if carried is not None:
+        moving = moving + carried
+    form: Matrix = csr_matrix(moving.T @ normal_motion @ moving)
+    if columns is not None:
+        form = columns @ (form @ columns.T)
+    squared = _real_form(form, response, response)
     impedance = operators.density * operators.sound_speed
     return np.asarray(power / (0.5 * impedance * np.asarray(omega) ** 2 * squared))
 

@@ -6,7 +6,7 @@ one frequency (`krylov`), and the Galerkin projection on that space (`projection
 space grows until the sound power at every frequency asked for has settled (theory: S2-61).
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import islice, pairwise, zip_longest
@@ -179,6 +179,10 @@ class ReducedModel:
         return omega[light & (omega.real >= low) & (omega.real < high)]
 
 
+Power = Callable[[ReducedModel, FloatArray], FloatArray]
+"""Powers (f,) or (f, k) [W] of a model at angular frequencies (f,) [rad/s]."""
+
+
 @dataclass(frozen=True, eq=False)
 class Certificate:
     """How a reduced model was made, and how good it is.
@@ -230,6 +234,8 @@ class ReducedSweep:
         The last one made, unless it was given up.
     report : SolverReport
         What the solvers did.
+    power : callable
+        The powers that are judged.
     """
 
     model: ReducedModel
@@ -237,6 +243,7 @@ class ReducedSweep:
     certificate: Certificate
     factor: Factorization | None
     report: SolverReport
+    power: Power = ReducedModel.radiated
 
     def without_factor(self) -> "ReducedSweep":
         """Return the same sweep without the memory of its factor."""
@@ -244,11 +251,15 @@ class ReducedSweep:
 
     def estimate(self, frequency: FloatArray) -> FloatArray:
         """Estimate of the error of the radiated power level (f,) [dB] at any frequencies [Hz]."""
-        return error_estimate(self.model, self.smaller, 2.0 * np.pi * np.atleast_1d(frequency))
+        omega = 2.0 * np.pi * np.atleast_1d(frequency)
+        return error_estimate(self.model, self.smaller, omega, self.power)
 
 
 def error_estimate(
-    model: ReducedModel, smaller: Sequence[ReducedModel], omega: FloatArray
+    model: ReducedModel,
+    smaller: Sequence[ReducedModel],
+    omega: FloatArray,
+    power: Power = ReducedModel.radiated,
 ) -> FloatArray:
     """Largest change of the radiated power level from smaller models of the same space (f,) [dB].
 
@@ -256,7 +267,7 @@ def error_estimate(
     makes in the larger space: the hierarchical estimate of the smaller one's error.  The larger
     one's error is less by the rate of convergence.  Of several loads it is the worst.
     """
-    return _largest_change(model.radiated(omega), [other.radiated(omega) for other in smaller])
+    return _largest_change(power(model, omega), [power(other, omega) for other in smaller])
 
 
 def _largest_change(power: FloatArray, others: Sequence[FloatArray]) -> FloatArray:
@@ -273,6 +284,7 @@ def reduce_system(
     load: AnyArray,
     frequency: FloatArray,
     *,
+    power: Power = ReducedModel.radiated,
     tolerance: float = 0.01,
     solver: SolverChain | None = None,
     most_vectors: int = 40,
@@ -290,8 +302,11 @@ def reduce_system(
         Krylov vectors and the power of each has to be right.
     frequency : (f,) array
         Where the power has to be right [Hz]; the needles between them are judged too.
+    power : callable
+        Powers (f,) or (f, k) of a model at angular frequencies (f,) that have to be right; by
+        default the radiated power of each load.
     tolerance : float
-        Largest estimate of the error of the radiated power level [dB].
+        Largest estimate of the error of the power's level [dB].
     solver : SolverChain, optional
         Symmetric.
     most_vectors : int
@@ -329,10 +344,10 @@ def reduce_system(
         for vectors in islice(_together(operators, omega, factor, load), most_vectors):
             space.extend(vectors)
             models = [*models, ReducedModel(operators, space, load, space.size)][-_JUDGED:]
-            powers = [*powers, models[-1].radiated(2.0 * np.pi * at)][-_JUDGED:]
+            powers = [*powers, power(models[-1], 2.0 * np.pi * at)][-_JUDGED:]
             judged, estimate = at, np.full(at.shape, np.inf)
             if len(history) + 1 >= _LEAST:
-                judged, estimate = _judge(models, powers, at, tolerance)
+                judged, estimate = _judge(models, powers, at, tolerance, power)
             history.append(float(estimate.max()))
             progress(_STAGE, None, f"{len(history)} vectors, error {history[-1]:.1e} dB")
             if history[-1] <= tolerance:
@@ -345,6 +360,7 @@ def reduce_system(
                     ),
                     factor,
                     chain.report(),
+                    power,
                 )  # fmt: skip
         worst = float(judged[int(np.argmax(estimate))])
     raise ConvergenceError(
@@ -368,6 +384,7 @@ def _judge(
     powers: Sequence[FloatArray],
     frequency: FloatArray,
     tolerance: float,
+    power: Power,
 ) -> tuple[FloatArray, FloatArray]:
     """Frequencies and estimates; at the resonances too where the others are good enough."""
     estimate = _largest_change(powers[-1], powers[:-1])
@@ -377,6 +394,6 @@ def _judge(
     needles, _ = model.light_modes((float(frequency.min()), float(frequency.max())))
     if needles.size == 0:  # every mode of the band may be heavily damped
         return frequency, estimate
-    between = error_estimate(model, smaller, 2.0 * np.pi * needles)
+    between = error_estimate(model, smaller, 2.0 * np.pi * needles, power)
     judged, first = np.unique(np.concatenate([frequency, needles]), return_index=True)
     return judged, np.concatenate([estimate, between])[first]

@@ -81,7 +81,11 @@ class RootedSystem:
 
         Minus it is what the blade does to its support: the blocked force, if the root is at rest.
         """
-        return np.asarray(-self.scale * (response[..., self.operators.blocks.held] @ _TURN[:, 6:]))
+        return self.held_reaction(response[..., self.operators.blocks.held])
+
+    def held_reaction(self, held: ComplexArray) -> ComplexArray:
+        """Force and moment (..., 6) from the twelve unknowns of the root alone, (..., 12)."""
+        return np.asarray(-self.scale * (held @ _TURN[:, 6:]))
 
     def motion(self, response: ComplexArray) -> ComplexArray:
         """Read the translation [m] and rotation [rad] of the root, (..., 6)."""

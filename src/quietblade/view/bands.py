@@ -8,6 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter, NullLocator
 
+from quietblade.results.excitations import of_signal
 from quietblade.results.model import ConfigurationResult, Result
 from quietblade.typing import FloatArray
 from quietblade.view.limits import LIMITS, band_edges, chosen_limits, rows_of
@@ -85,7 +86,8 @@ def _draw_panel(ax: Axes, panel: _Panel, result: Result) -> None:
     ax.xaxis.set_minor_formatter(NullFormatter())
     ax.set_xticks(ticks, [f"{tick:.4g}" for tick in ticks])
     ax.margins(y=0.15)
-    ax.set(xlabel=f"{_KINDS[panel.kind]} [Hz]", ylabel=_LABELS[panel.quantity])
+    label = of_signal(_LABELS[panel.quantity], random=first.random)
+    ax.set(xlabel=f"{_KINDS[panel.kind]} [Hz]", ylabel=label)
 
 
 def _levels(configuration: ConfigurationResult, panel: _Panel) -> tuple[FloatArray, FloatArray]:

@@ -11,6 +11,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
+from quietblade.results.excitations import of_signal
 from quietblade.results.model import ConfigurationResult, Result
 from quietblade.results.peaks import find_peaks
 from quietblade.typing import FloatArray
@@ -191,8 +192,8 @@ def _note(result: Result) -> str:
     first = next(iter(result.configurations.values()))
     distance = first.directivity.distance
     place = "far away" if np.isinf(distance) else f"at {distance:g} m from the centre"
-    kr = first.kr
+    kr, unit = first.kr, of_signal(_UNIT, random=first.random)
     return (
-        f"levels relative to the loudest direction; there pressure times distance {place} {_UNIT}\n"
+        f"levels relative to the loudest direction; there pressure times distance {place} {unit}\n"
         f"{first.radiation_condition}, kR = {kr[0]:.2f} to {kr[-1]:.2f}"
     )

@@ -12,7 +12,16 @@ from quietblade.results.files import replacing
 from quietblade.results.model import Result
 from quietblade.results.store import RunFolder
 from quietblade.typing import AnyArray, Progress, silent
-from quietblade.view import bands, directivity, far_spectra, losses, scenes, sections, spectra
+from quietblade.view import (
+    bands,
+    directivity,
+    far_spectra,
+    losses,
+    scenes,
+    sections,
+    spectra,
+    transfer,
+)
 from quietblade.view.campbell import draw_campbell
 from quietblade.view.style import DPI
 
@@ -94,7 +103,7 @@ def _drawings(folder: RunFolder, result: Result) -> Mapping[str, Drawing]:
     drawings["power-shares"] = lambda: losses.draw_power_shares(result)
     if result.moduli.name:
         drawings["moduli"] = lambda: losses.draw_moduli(result)
-    return drawings | _far_field(result)
+    return drawings | _far_field(result) | dict(transfer.drawings(result))
 
 
 def _far_field(result: Result) -> dict[str, Drawing]:

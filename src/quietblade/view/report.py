@@ -71,6 +71,11 @@ _CAPTIONS = {
     "the radiation condition reflects.",
     "power-shares": "Where the injected power goes, in shares; dotted: peaks of the sound power.",
     "moduli": "Complex moduli of the materials over frequency.",
+    "power-by-load": "Radiated sound power of each load alone, and of all together.",
+    "mobility": "Drive-point mobility of each load.",
+    "power-per-force": "Radiated power of each load alone per mean square force.",
+    "root-forces": "Force and moment of the blade on its root, and the power that a shaft in place "
+    "of the clamp takes, beside the radiated power.",
     "mode-shapes-C0": "Wet modes at rest.",
     "mode-shapes-C1": "Wet modes under load.",
     "campbell": "Wet modes under load over the speed of the shaft, with the blade rate's multiples "

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.gridspec import SubplotSpec
 from matplotlib.patches import ConnectionPatch
 
+from quietblade.results.excitations import of_signal
 from quietblade.results.model import REFERENCE_POWER, ConfigurationResult, Result, path
 from quietblade.results.peaks import Peak, find_peaks
 from quietblade.typing import AnyArray, FloatArray
@@ -126,7 +127,8 @@ def draw_power_paths(result: Result) -> Figure:
         ax.plot(f, radiated[path("multipoles")], color=VERMILION, linestyle=(0, (1.2, 1.2)),
                 label="radiated, multipoles")  # fmt: skip
         title = f"{_TITLES[name]}; {radiation_note(configuration)}"
-        ax.set(title=title, xlim=(f[0], f[-1]), ylabel="Power level\n[dB re 1 pW]")
+        label = of_signal("Power level\n[dB re 1 pW]", random=configuration.random)
+        ax.set(title=title, xlim=(f[0], f[-1]), ylabel=label)
         _keep_readable(ax, list(radiated), above=_level(spectrum.injected))
     figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=4)
     axes[-1].set_xlabel(_FREQUENCY)
@@ -146,7 +148,8 @@ def _draw_spectra(
     grid = figure.add_gridspec(2 if shown else 1, 1, height_ratios=[0.28, 1.0] if shown else [1.0])
     axes = figure.add_subplot(grid[-1])
     figure.suptitle(title, x=0.01, ha="left", fontsize=9.0)
-    axes.set(xlabel=_FREQUENCY, ylabel=unit)
+    labels = {of_signal(unit, random=curve.configuration.random): None for curve in curves}
+    axes.set(xlabel=_FREQUENCY, ylabel=" or ".join(labels or {unit: None}))
     if not curves:
         return figure
     levels = [curve.level for curve in curves]
