@@ -11,7 +11,7 @@ import numpy as np
 from quietblade.case import Case
 from quietblade.case.presets import preset_text
 from quietblade.geometry import Blade
-from quietblade.mesh import Mesh, build_mesh
+from quietblade.mesh import Mesh, build_mesh, resize_sphere
 from quietblade.mesh.motion import solve_mesh_motion
 from quietblade.propulsion.structure import Structure
 from quietblade.propulsion.tangent import Tangent, compute_tangent
@@ -57,19 +57,8 @@ class WetBlade:
         return field
 
     def in_sphere(self, radius: float, fixed: float = 0.6) -> "WetBlade":
-        """Return the same blade, cell by cell, in another sphere [m].
-
-        The water's nodes within ``fixed`` [m] of the centre stay, blade included; those outside
-        move along their rays, in proportion.
-        """
-        away = self.mesh.nodes - self.mesh.centre
-        distance = np.linalg.norm(away, axis=1)
-        beyond = np.maximum(distance - fixed, 0.0)
-        stretch = (radius - fixed) / (self.mesh.radius - fixed)
-        moved = np.minimum(distance, fixed) + stretch * beyond
-        ratio = np.where(beyond > 0.0, moved / np.maximum(distance, fixed), 1.0)
-        nodes = self.mesh.centre + ratio[:, None] * away
-        return replace(self, mesh=replace(self.mesh, nodes=nodes, radius=radius))
+        """Return the same blade, cell by cell, in another sphere [m] (`resize_sphere`)."""
+        return replace(self, mesh=resize_sphere(self.mesh, radius, fixed))
 
     def system(self, condition: RadiationCondition | None = None, loss: Loss = None) -> Operators:
         """A(omega) with a condition on the sphere, first-order BGT if left out, and a loss.
