@@ -8,6 +8,7 @@ import pytest
 
 from quietblade.errors import ConvergenceError
 from quietblade.linalg import make_solver
+from quietblade.materials.viscoelastic import FractionalZener
 from quietblade.typing import FloatArray
 from quietblade.vibroacoustics.complex_modes import complex_modes
 from quietblade.vibroacoustics.krylov import krylov_vectors, taylor_coefficients
@@ -18,6 +19,7 @@ from quietblade.vibroacoustics.power import level, power_budget
 from quietblade.vibroacoustics.projection import Projection
 from quietblade.vibroacoustics.reduced import ReducedSweep, reduce_system
 from tests.vibroacoustics.small_systems import random_operators
+from verification.acoustics_damping import wide_band_error
 
 BAND = (3.0, 9.0)
 GRID = np.linspace(*BAND, 61)
@@ -203,3 +205,16 @@ def test_one_factor_serves_the_modes_of_a_wide_band() -> None:
     both = found.converged & plain.converged
     assert np.mean(both) > 0.9
     np.testing.assert_allclose(found.omega[both], plain.omega[both], rtol=1e-7)
+
+
+@pytest.mark.parametrize("band", [(50.0, 3000.0), (0.0, 400.0), (330.0, 350.0)])
+def test_modes_of_any_band_have_the_moduli_of_their_own_frequency(
+    band: tuple[float, float],
+) -> None:
+    assert wide_band_error(FractionalZener(1.4, 1e-3, 0.6), band) < 1e-9
+
+
+@pytest.mark.parametrize("band", [(200.0, 100.0), (-1.0, 100.0), (0.0, 0.0)])
+def test_what_is_not_a_band_is_refused(band: tuple[float, float]) -> None:
+    with pytest.raises(ValueError, match="not a band"):
+        wide_band_error(FractionalZener(1.4, 1e-3, 0.6), band)
