@@ -96,6 +96,8 @@ class ReducedModel:
         """Solutions in the columns, (f, size) or (f, k, size), at angular frequencies [rad/s]."""
         load = self.reduced_load.reshape(-1, self.size).T.astype(complex)
         at = np.atleast_1d(omega)
+        if len(at) == 0:
+            return np.zeros((0, *self.load.shape[:-1], self.size), dtype=np.complex128)
         rows = [
             np.linalg.solve(self.space.at_each(part, self.size), load).swapaxes(1, 2)
             for part in np.array_split(at, max(1, -(-len(at) // _AT_ONCE)))
@@ -300,6 +302,8 @@ def reduce_system(
 
     Raises
     ------
+    ValueError
+        If the frequencies are not positive, or a load is zero.
     ConvergenceError
         The estimate stays above the tolerance; says where.
     """
@@ -307,6 +311,9 @@ def reduce_system(
     at = np.asarray(frequency, dtype=float)
     if at.ndim != 1 or at.size == 0 or not np.all(at > 0.0):
         raise ValueError("the frequencies of a sweep have to be a list of positive numbers [Hz]")
+    sizes = np.linalg.norm(np.atleast_2d(load), axis=1)
+    if not np.all((sizes > 0.0) & np.isfinite(sizes)):
+        raise ValueError("a load of a sweep is zero or not finite: it makes no sound to be swept")
     space = Projection(operators)
     models: list[ReducedModel] = []
     powers: list[FloatArray] = []  # theirs, at the frequencies asked for
