@@ -39,26 +39,45 @@ class WetBlade:
         Of the solid.
     displacement : (nodes, 3) array or None
         Of the blade's nodes from C0 to C1 [m]; None at rest.
+    moved : (nodes, 3) array or None
+        Of all nodes; None finds that of the water's by `solve_mesh_motion`.
     """
 
     case: Case
     mesh: Mesh
     tangent: Tangent
     displacement: FloatArray | None
+    moved: FloatArray | None = None
+
+    @cached_property
+    def carried(self) -> FloatArray | None:
+        """Displacement of all nodes from C0 to C1 (nodes, 3) [m], the water's too, if any moves."""
+        if self.displacement is None:
+            return None
+        if self.moved is not None:
+            return self.moved
+        return solve_mesh_motion(self.mesh, self.displacement, self.case.acoustics.gap).displacement
 
     @cached_property
     def motion(self) -> ngs.GridFunction | None:
-        """Displacement of the whole mesh from C0 to C1 [m], if there is one."""
-        if self.displacement is None:
+        """The same as a field of the whole mesh."""
+        if self.carried is None:
             return None
-        motion = solve_mesh_motion(self.mesh, self.displacement, self.case.acoustics.gap)
         field = ngs.GridFunction(ngs.VectorH1(self.mesh.fem, order=2))
-        field.vec.FV().NumPy()[:] = self.mesh.basis.to_dofs(motion.displacement)
+        field.vec.FV().NumPy()[:] = self.mesh.basis.to_dofs(self.carried)
         return field
 
-    def in_sphere(self, radius: float, fixed: float = 0.6) -> "WetBlade":
-        """Return the same blade, cell by cell, in another sphere [m] (`resize_sphere`)."""
-        return replace(self, mesh=resize_sphere(self.mesh, radius, fixed))
+    def in_sphere(self, radius: float, fixed: float) -> "WetBlade":
+        """Return the same blade, cell by cell, in another sphere [m] (`resize_sphere`).
+
+        What stays within ``fixed`` [m] of the centre is the same on C0 and on C1.
+        """
+        mesh = resize_sphere(self.mesh, radius, fixed)
+        if self.carried is None:
+            return replace(self, mesh=mesh)
+        deformed = replace(self.mesh, nodes=self.mesh.nodes + self.carried)
+        moved = resize_sphere(deformed, radius, fixed).nodes - mesh.nodes
+        return replace(self, mesh=mesh, moved=moved)
 
     def system(self, condition: RadiationCondition | None = None, loss: Loss = None) -> Operators:
         """A(omega) with a condition on the sphere, first-order BGT if left out, and a loss.

@@ -145,9 +145,9 @@ def damped_mode(degree: int) -> complex:
     """
     low, high = RESONANCES[degree]
     exact = complex_mode(SHELL, degree, low, high, DECAY)
-    values, _ = swept().space.eigenpairs(np.pi * (low + high), swept().size)
-    found = values[np.argmin(np.abs(values - 2.0 * np.pi * exact))]
-    return complex(found) / (2.0 * np.pi)
+    values, vectors = swept().space.eigenpairs(np.pi * (low + high), swept().size)
+    nearest = np.argmin(np.abs(values - 2.0 * np.pi * exact))
+    return swept().space.refined(complex(values[nearest]), vectors[nearest])[0] / (2.0 * np.pi)
 
 
 def damped_frequency(degree: int) -> float:
