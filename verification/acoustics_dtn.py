@@ -149,7 +149,9 @@ def truncated_error(condition: RadiationCondition, form: Bgt, kr: float) -> Floa
     found = radiated_power(local.operators, np.full(len(DEGREES), omega), response)
     exact = np.array(
         [
-            moving_sphere(n, kr / OUTER, BODY, OUTER, 1.0, form).power(WATER.density, omega)
+            moving_sphere(n, kr / OUTER, BODY, OUTER, 1.0, form).power_through(
+                OUTER, form, WATER.density, omega
+            )
             for n in DEGREES
         ]
     )
