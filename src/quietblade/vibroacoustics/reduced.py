@@ -31,6 +31,7 @@ _JUDGED = 3  # successive models whose powers must agree
 _LEAST = 4  # vectors before the first judgement
 _LIGHT = 0.2  # loss factor up to which a mode can make a needle
 _OFF = 0.95  # of the range in which modes with interpolated factors are looked for
+_SETTLED = 1e-9  # relative change of such a mode's frequency at which it is good enough
 _LOWEST = 1e-3  # of a band's upper end: below it no mode is looked for
 _EDGE = 1e-12  # by which the upper end of a band is widened, to be inside
 _AT_ONCE = 64  # frequencies whose matrices are in memory together
@@ -170,7 +171,7 @@ class ReducedModel:
         near = (values.real > _OFF * low) & (values.real < high / _OFF)
         near &= np.abs(values.imag) < _LIGHT * values.real
         refined = [
-            self.space.refined(complex(value), vector)[0]
+            self.space.refined(complex(value), vector, _SETTLED)[0]
             for value, vector in zip(values[near], coordinates[near], strict=True)
         ]
         omega = np.array(refined, dtype=np.complex128)
