@@ -150,7 +150,7 @@ class ReducedModel:
 
         Those that decay too fast to make a peak are left out; ascending.  Complex moduli and the
         sphere's factors are those at each mode's own Omega, however wide the band is; without
-        ``refine`` they are interpolated from the middle of an octave, which is quicker.
+        ``refine`` they are interpolated from the band's middle, which is much quicker.
 
         Raises
         ------
@@ -160,7 +160,7 @@ class ReducedModel:
         if not 0.0 <= band[0] <= band[1] or not 0.0 < band[1] < np.inf:
             raise ValueError(f"reduced model: {band[0]:g} to {band[1]:g} Hz is not a band")
         low, high = (2.0 * np.pi * max(f, _LOWEST * band[1]) for f in band)
-        parts = max(1, int(np.ceil(np.log2(high / low))))
+        parts = max(1, int(np.ceil(np.log2(high / low)))) if refine else 1
         limits = np.geomspace(low, high, parts + 1)
         limits[-1] *= 1.0 + _EDGE
         found = np.concatenate([self._light(*part, refine) for part in pairwise(limits.tolist())])
@@ -168,7 +168,7 @@ class ReducedModel:
         return found.real[order] / (2.0 * np.pi), (2.0 * found.imag / found.real)[order]
 
     def _light(self, low: float, high: float, refine: bool) -> ComplexArray:
-        """Omega of the light modes from low to high [rad/s], an octave at most."""
+        """Omega of the light modes from low to high [rad/s]."""
         values, coordinates = self.space.eigenpairs(0.5 * (low + high), self.size)
         # their factors are interpolated from the middle: a mode may be a little off
         near = (values.real > _OFF * low) & (values.real < high / _OFF)
