@@ -143,11 +143,14 @@ class ReducedModel:
         sizes = (np.linalg.norm(part, axis=-1) for part in (defect, self.load))
         return float(np.max(np.divide(*sizes)))
 
-    def light_modes(self, band: tuple[float, float]) -> tuple[FloatArray, FloatArray]:
+    def light_modes(
+        self, band: tuple[float, float], *, refine: bool = True
+    ) -> tuple[FloatArray, FloatArray]:
         """Frequencies Re Omega / 2 pi [Hz] in a band and loss factors of the model's own modes.
 
         Those that decay too fast to make a peak are left out; ascending.  Complex moduli and the
-        sphere's factors are those at each mode's own Omega, however wide the band is.
+        sphere's factors are those at each mode's own Omega, however wide the band is; without
+        ``refine`` they are interpolated from the band's middle, which is much quicker.
 
         Raises
         ------
@@ -157,21 +160,21 @@ class ReducedModel:
         if not 0.0 <= band[0] <= band[1] or not 0.0 < band[1] < np.inf:
             raise ValueError(f"reduced model: {band[0]:g} to {band[1]:g} Hz is not a band")
         low, high = (2.0 * np.pi * max(f, _LOWEST * band[1]) for f in band)
-        parts = max(1, int(np.ceil(np.log2(high / low))))
+        parts = max(1, int(np.ceil(np.log2(high / low)))) if refine else 1
         limits = np.geomspace(low, high, parts + 1)
         limits[-1] *= 1.0 + _EDGE
-        found = np.concatenate([self._light(*part) for part in pairwise(limits.tolist())])
+        found = np.concatenate([self._light(*part, refine) for part in pairwise(limits.tolist())])
         order = np.argsort(found.real)
         return found.real[order] / (2.0 * np.pi), (2.0 * found.imag / found.real)[order]
 
-    def _light(self, low: float, high: float) -> ComplexArray:
-        """Omega of the light modes from low to high [rad/s], an octave at most."""
+    def _light(self, low: float, high: float, refine: bool) -> ComplexArray:
+        """Omega of the light modes from low to high [rad/s]."""
         values, coordinates = self.space.eigenpairs(0.5 * (low + high), self.size)
         # their factors are interpolated from the middle: a mode may be a little off
         near = (values.real > _OFF * low) & (values.real < high / _OFF)
         near &= np.abs(values.imag) < _LIGHT * values.real
         refined = [
-            self.space.refined(complex(value), vector, _SETTLED)[0]
+            self.space.refined(complex(value), vector, _SETTLED)[0] if refine else value
             for value, vector in zip(values[near], coordinates[near], strict=True)
         ]
         omega = np.array(refined, dtype=np.complex128)
@@ -391,7 +394,7 @@ def _judge(
     if estimate.max() > tolerance or len(frequency) == 1:
         return frequency, estimate
     *smaller, model = models
-    needles, _ = model.light_modes((float(frequency.min()), float(frequency.max())))
+    needles, _ = model.light_modes((float(frequency.min()), float(frequency.max())), refine=False)
     if needles.size == 0:  # every mode of the band may be heavily damped
         return frequency, estimate
     between = error_estimate(model, smaller, 2.0 * np.pi * needles, power)
