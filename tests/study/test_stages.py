@@ -44,7 +44,7 @@ def test_every_key_of_the_case_is_read_by_a_stage() -> None:
             readers = [name for name, stage in known.items() if stage.depends_on(key)]
             assert readers or key in ALWAYS, (
                 f"no stage reads {key}. Which stages compute with it? Add the key to the `reads` "
-                "of each of them in quietblade/study/stages.py, or a stage of your own to the table; add "
+                "of each of them in quietblade/study/stages.py, or add a stage to the table; add "
                 "it to ALWAYS if only what is made anew in every run depends on it."
             )
 
