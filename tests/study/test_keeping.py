@@ -112,6 +112,19 @@ def test_stages_are_kept_and_forced(tmp_path: Path) -> None:
     assert made(False) == (1, True)
 
 
+def test_full_disk_ends_no_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("quietblade.results.files.os.fsync", full)
+    store = StageStore(tmp_path)
+    stages = Stages(lambda *_: None, {"mesh": ORIGIN}, store)
+    assert stages.make("mesh", lambda _: 1) == 1
+    assert "No space left" in stages.notices[0].message
+    assert store.known("mesh") is None
+    assert list(tmp_path.iterdir()) == []
+
+
 @dataclass(frozen=True)
 class Stranger:
     """Not of the package."""

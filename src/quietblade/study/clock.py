@@ -117,7 +117,12 @@ class Stages(Clock):
         with self.stage(name, why) as report:
             result = compute(report)
         if store is not None:
-            store.keep(name, origin, self.laps[name], result, makers)
+            try:
+                store.keep(name, origin, self.laps[name], result, makers)
+            except OSError as error:  # as of a full disk: the next run computes the stage again
+                fault = f"could not be kept: {error.strerror or error}"
+                remedy = "Make room on the disk, or run with --no-keep"
+                self.notices.append(Notice(f"stage {name}", fault, remedy=remedy))
         return result
 
 

@@ -36,6 +36,10 @@ ABOVE_BAND = 1.2
 """Wet modes are sought up to this multiple of the band's upper end, so that a mode that the
 static load moves into the band keeps its name."""
 
+SPACE_TOLERANCE = 1e-6
+"""Residual of the solves that make the space of a reduced sweep.  They say where the solutions
+lie, not what they are: these, and the estimate of their error, come from the matrices."""
+
 FAST_SPIN = 0.05
 """Ratio 2 omega_p / omega_1 beyond which the neglected Coriolis force is noticed."""
 
@@ -165,7 +169,7 @@ def solve_vibration(
             load,
             translate.base_frequencies(case),
             tolerance=case.acoustics.accuracy,
-            solver=symmetric_solver(case),
+            solver=_space_solver(case),
             progress=progress,
         )
     shapes = frames.shapes(nodal_shapes(mesh, operators, modes.vectors))
@@ -235,6 +239,12 @@ def symmetric_solver(case: Case, *, precision: Precision | None = None) -> Solve
         precision=precision or case.solver.precision,
         tolerance=case.solver.tolerance,
     )
+
+
+def _space_solver(case: Case) -> SolverChain:
+    """Make the solver for the vectors of a reduced sweep: half the memory, few refinements."""
+    tolerance = max(case.solver.tolerance, SPACE_TOLERANCE)
+    return make_solver(case.solver.name, precision="mixed", tolerance=tolerance)
 
 
 def displacement_field(mesh: Mesh, motion: MeshMotion) -> ngs.GridFunction:
