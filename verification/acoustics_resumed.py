@@ -26,6 +26,19 @@ CHANGES = {
     "sections = 101": "sections = 21\nsection_nodes = 81",
 }
 
+PROGRAM = """
+import sys
+from pathlib import Path
+from quietblade.case import Case
+from quietblade.results.store import RunFolder
+from quietblade.study.run import run_case
+
+def say(stage, fraction, message):
+    print(stage, message, flush=True)
+
+run_case(Case.load(sys.argv[1]), RunFolder(Path(sys.argv[2])), say)
+"""
+
 
 def case_text() -> str:
     """Write the paper's aluminium blade without its film, as coarse as it can be."""
@@ -41,10 +54,7 @@ def case_text() -> str:
 
 def run(case: Path, folder: Path, lines: int | None = None) -> bool:
     """Run a case, killed after so many lines of progress; whether it came to its end."""
-    command = (
-        sys.executable, "-m", "quietblade.cli.main",
-        "run", "-v", "--brief", str(case), "--out", str(folder),
-    )  # fmt: skip
+    command = (sys.executable, "-c", PROGRAM, str(case), str(folder))
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
         assert process.stdout is not None
         for number, _ in enumerate(process.stdout):

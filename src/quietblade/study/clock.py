@@ -101,7 +101,7 @@ class Stages(Clock):
         why = "" if kept is None else origin.changes_from(kept.origin)
         if store is not None and kept is not None:
             if self._force:
-                why = "as you wish"
+                why = "everything is computed again"
             elif not why:
                 try:
                     result = cast(Made, store.read(name, makers))
@@ -124,6 +124,16 @@ class Stages(Clock):
                 remedy = "Make room on the disk, or run with --no-keep"
                 self.notices.append(Notice(f"stage {name}", fault, remedy=remedy))
         return result
+
+
+def within(progress: Progress, low: float, high: float) -> Progress:
+    """Put the fractions that a part of a stage reports into the stage's own, from low to high."""
+
+    def report(stage: str, fraction: float | None, message: str) -> None:
+        share = None if fraction is None else low + (high - low) * fraction
+        progress(stage, share, message)
+
+    return report
 
 
 def peak_memory() -> float:

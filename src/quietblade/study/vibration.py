@@ -18,6 +18,7 @@ from quietblade.mesh.surface import SurfaceQuadrature
 from quietblade.propulsion.structure import Structure, StructureState
 from quietblade.propulsion.tangent import Tangent, compute_tangent
 from quietblade.study import losses, translate
+from quietblade.study.clock import within
 from quietblade.study.frames import SectionFrames
 from quietblade.study.statics import Statics
 from quietblade.study.stream import with_stream
@@ -182,7 +183,7 @@ def solve_vibration(
         solver=symmetric_solver(case),
         space=sweep.model.space if sweep else None,
         factor=sweep.factor if sweep else None,
-        progress=progress,
+        progress=within(progress, 0.8, 1.0),
     )
     return Vibration(
         name=name,
