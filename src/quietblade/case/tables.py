@@ -326,8 +326,7 @@ class SolverWords(Words):
     precision: Annotated[Precision, one_of(Precision, "a precision")] = Field(
         "mixed",
         title="Precision",
-        description="Factors in single precision with refinement (mixed), or in double; the factor "
-        "that makes the space of a reduced sweep is always tried in single first",
+        description="Factors in single precision with refinement (mixed), or in double",
     )
     tolerance: Annotated[Number, between(0.0, 1e-3, open_low=True)] = Field(
         1e-10, title="Tolerance", description="Relative residual that each solve aims at"

@@ -30,8 +30,8 @@ from quietblade.propulsion.stress import StressReport
 from quietblade.results import model
 from quietblade.study import far_outcome
 from quietblade.study.dissipation import dissipation
-from quietblade.study.mode_tables import ModeTables
 from quietblade.study.keeping import Lap
+from quietblade.study.mode_tables import ModeTables
 from quietblade.study.sound import Sound
 from quietblade.study.stages import PACKAGES
 from quietblade.study.statics import Statics

@@ -170,7 +170,7 @@ def solve_vibration(
             load,
             translate.base_frequencies(case),
             tolerance=case.acoustics.accuracy,
-            solver=_space_solver(case),
+            solver=symmetric_solver(case, tolerance=SPACE_TOLERANCE),
             progress=progress,
         )
     shapes = frames.shapes(nodal_shapes(mesh, operators, modes.vectors))
@@ -233,19 +233,15 @@ def _refined(case: Case, vibrations: list[Vibration]) -> FloatArray:
     )
 
 
-def symmetric_solver(case: Case, *, precision: Precision | None = None) -> SolverChain:
-    """Make the solver of the case for systems of step 2."""
+def symmetric_solver(
+    case: Case, *, precision: Precision | None = None, tolerance: float = 0.0
+) -> SolverChain:
+    """Make the solver of the case for systems of step 2; of the tolerances the larger counts."""
     return make_solver(
         case.solver.name,
         precision=precision or case.solver.precision,
-        tolerance=case.solver.tolerance,
+        tolerance=max(case.solver.tolerance, tolerance),
     )
-
-
-def _space_solver(case: Case) -> SolverChain:
-    """Make the solver for the vectors of a reduced sweep: half the memory, few refinements."""
-    tolerance = max(case.solver.tolerance, SPACE_TOLERANCE)
-    return make_solver(case.solver.name, precision="mixed", tolerance=tolerance)
 
 
 def displacement_field(mesh: Mesh, motion: MeshMotion) -> ngs.GridFunction:
