@@ -16,7 +16,7 @@ from quietblade.results.model import Result, path
 from quietblade.results.store import RunFolder
 from quietblade.results.vtk import field_labels, read_fields
 from quietblade.study.run import finished, paper_blade, run_case
-from quietblade.study.stages import stages
+from quietblade.study.stages import Stage, stages
 from verification.acoustics_resumed import difference
 
 COARSE = {
@@ -271,9 +271,10 @@ def test_stages_read_only_what_they_declare(result: Result, watch: Watch) -> Non
 
 
 def depends(name: str, key: str) -> bool:
-    """Whether a stage, or one that it comes after, declares a key."""
-    table = stages(("C0", "C1"))
-    return table[name].depends_on(key) or any(depends(other, key) for other in table[name].after)
+    """Whether a stage, or one that it comes after, declares a key, or that it does not matter."""
+    stage = stages(("C0", "C1"))[name]
+    ignored = Stage(stage.ignores).depends_on(key)
+    return ignored or stage.depends_on(key) or any(depends(other, key) for other in stage.after)
 
 
 def test_changed_case_goes_on_from_what_is_kept(
