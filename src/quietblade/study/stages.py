@@ -58,6 +58,9 @@ _VIBRATION = (
 )  # fmt: skip
 
 ALWAYS = (
+    "bands",
+    "limits",
+    "files.limits",
     "film.minimum_cover",
     "flow.depth",
     "flow.atmospheric_pressure",
@@ -103,7 +106,7 @@ def stages(configurations: Sequence[str]) -> dict[str, Stage]:
         table[f"sweep {name}"] = Stage(
             (
                 "acoustics.band", "acoustics.step", "acoustics.points_per_mode",
-                "acoustics.configurations", "solver",
+                "acoustics.configurations", "far_field", "solver",
             ),
             after=modes,
         )  # fmt: skip
