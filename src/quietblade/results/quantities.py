@@ -526,7 +526,7 @@ _GROUPS: dict[str, tuple[Quantity, ...]] = {
     ),
     "run/cost": (
         _text("stage", "stage", "stage of the run"),
-        _q("kept", "", "1", "stage", "whether it was taken from an earlier run, whose time counts",
+        _q("kept", "", "", "stage", "whether it was taken from an earlier run, whose time counts",
            kind="flag"),
         _q("memory", "", "B", "stage", "largest memory of the process until its end, or NaN"),
         _q("factorization", "", "s", "",
