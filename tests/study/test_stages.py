@@ -13,8 +13,9 @@ from quietblade.study import stages as table
 from quietblade.study.stages import ALWAYS, Origin, inputs, origins, stages
 
 BOTH = ("C0", "C1")
-STEP_1 = {"flow and structure", "mesh motion", "modes C1", "sweep C0", "sweep C1"}
-STEP_2 = {"modes C0", "modes C1", "sweep C0", "sweep C1"}
+SWEEPS = {"sweep C0", "sweep C1", "mode tables"}
+STEP_1 = {"flow and structure", "mesh motion", "modes C1", *SWEEPS}
+STEP_2 = {"modes C0", "modes C1", *SWEEPS}
 ALL = {"mesh", *STEP_1, *STEP_2}
 
 
@@ -25,6 +26,8 @@ def everything() -> Case:
     plain["root"] = {"support": "elastic", "translation": [1e8, 1e8, 1e8]}
     plain["loads"] = [{"kind": "gravity", "acceleration": [0.0, 0.0, -9.81]}]
     plain["limits"] = [{"name": "quiet", "frequencies": [100.0, 200.0], "levels": [90.0, 90.0]}]
+    plain["campbell"] = {"speeds": [0.3, 0.6]}
+    plain["acoustics"]["flow_damping"] = True
     plain["flow"]["wake"] = {"radius": [0.2, 1.2], "axial": [0.8, 0.9]}
     return Case.from_plain(plain)
 
@@ -116,8 +119,8 @@ def test_what_a_change_touches() -> None:
     case = Case.parse(preset_text("paper-composite"))
     assert changed(case, title="another") == set()
     assert changed(case, flow__depth="3 m") == set()
-    assert changed(case, acoustics__points_per_mode=5) == {"sweep C0", "sweep C1"}
-    assert changed(case, far_field__points=[["5 m", "0 m", "0.7 m"]]) == {"sweep C0", "sweep C1"}
+    assert changed(case, acoustics__points_per_mode=5) == SWEEPS
+    assert changed(case, far_field__points=[["5 m", "0 m", "0.7 m"]]) == SWEEPS
     assert changed(case, acoustics__accuracy="0.1 dB") == STEP_2
     assert changed(case, acoustics__band=["100 Hz", "210 Hz"]) == STEP_2  # same cells of water
     assert changed(case, acoustics__band=["100 Hz", "2100 Hz"]) == ALL  # finer cells

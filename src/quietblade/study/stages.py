@@ -54,7 +54,7 @@ _VIBRATION = (
     "materials", "root", "water.density", "water.sound_speed", "flow.rotation",
     "acoustics.band", "acoustics.step", "acoustics.sweep", "acoustics.accuracy",
     "acoustics.radiation", "acoustics.radiation_accuracy", "acoustics.tangent", "acoustics.loss",
-    "excitation", "solver",
+    "acoustics.flow_damping", "excitation", "solver",
 )  # fmt: skip
 
 ALWAYS = (
@@ -69,13 +69,19 @@ ALWAYS = (
 """Keys that no stage reads: what depends on them is checked or made anew in every run."""
 
 
-def stages(configurations: Sequence[str]) -> dict[str, Stage]:
+def stages(
+    configurations: Sequence[str], *, stream: bool = True, campbell: bool = True
+) -> dict[str, Stage]:
     """Return the stages of a run in their order, by name.
 
     Parameters
     ----------
     configurations : sequence of str
         ``C0``, ``C1`` or both, as in ``acoustics.configurations``.
+    stream : bool
+        Whether the stream damps the blade, ``acoustics.flow_damping``.
+    campbell : bool
+        Whether there is a Campbell diagram.
     """
     table = {
         "mesh": Stage(
@@ -96,8 +102,9 @@ def stages(configurations: Sequence[str]) -> dict[str, Stage]:
     }  # fmt: skip
     if "C1" in configurations:
         table["mesh motion"] = Stage(("acoustics.gap",), after=("mesh", "flow and structure"))
-    # the blade at rest does not know of the flow
-    before = {"C0": ("mesh",), "C1": ("flow and structure", "mesh motion")}
+    # the blade at rest does not know of the flow, unless it is damped by it
+    rest = ("flow and structure",) if stream else ("mesh",)
+    before = {"C0": rest, "C1": ("flow and structure", "mesh motion")}
     modes = tuple(f"modes {name}" for name in configurations)
     for name, stage in zip(configurations, modes, strict=True):
         table[stage] = Stage(_VIBRATION, after=before[name])
@@ -109,6 +116,17 @@ def stages(configurations: Sequence[str]) -> dict[str, Stage]:
                 "acoustics.configurations", "far_field", "solver",
             ),
             after=modes,
+        )  # fmt: skip
+    sweeps = tuple(f"sweep {name}" for name in configurations)
+    table["mode tables"] = Stage(("acoustics.dry_modes", "solver"), after=(*modes, *sweeps))
+    if campbell:
+        table["Campbell diagram"] = Stage(
+            (
+                "campbell", "materials", "root", "loads", "files.loads", "water", "flow", "static",
+                "acoustics", "excitation", "solver",
+            ),
+            ignores=("water.vapour_pressure", "flow.depth", "flow.atmospheric_pressure"),
+            after=("mesh",),
         )  # fmt: skip
     return table
 
@@ -155,7 +173,12 @@ def origins(case: Case) -> dict[str, Origin]:
     """Return the origin of each stage of a case, by name and in their order."""
     known = dict(inputs(case))
     found: dict[str, Origin] = {}
-    for name, stage in stages(case.acoustics.configurations).items():
+    wanted = stages(
+        case.acoustics.configurations,
+        stream=case.acoustics.flow_damping,
+        campbell=case.campbell is not None,
+    )
+    for name, stage in wanted.items():
         found[name] = Origin(
             {key: value for key, value in known.items() if stage.depends_on(key)},
             {other: found[other].key for other in stage.after},
