@@ -57,6 +57,7 @@ def test_what_the_table_names_is_there() -> None:
     known = {key for key, _ in inputs(everything())} | {
         "files.blade.section",
         "files.loads[0].table",
+        "files.film.loss_factor.file",
     }
     for name, stage in stages(BOTH).items():
         for key in (*stage.reads, *stage.ignores):
