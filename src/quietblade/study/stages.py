@@ -51,7 +51,8 @@ class Stage:
 
 
 _VIBRATION = (
-    "materials", "files.*.loss_factor.*", "root", "water.density", "water.sound_speed", "flow.rotation",
+    "materials", "files.*.loss_factor.*", "root", "water.density",
+    "water.sound_speed", "flow.rotation",
     "acoustics.band", "acoustics.step", "acoustics.sweep", "acoustics.accuracy",
     "acoustics.radiation", "acoustics.radiation_accuracy", "acoustics.tangent", "acoustics.loss",
     "acoustics.flow_damping", "excitation", "solver",
@@ -122,7 +123,8 @@ def stages(
     if campbell:
         table["Campbell diagram"] = Stage(
             (
-                "campbell", "materials", "files.*.loss_factor.*", "root", "loads", "files.loads", "water", "flow", "static",
+                "campbell", "materials", "files.*.loss_factor.*", "root", "loads", "files.loads",
+                "water", "flow", "static",
                 "acoustics", "excitation", "solver",
             ),
             ignores=("water.vapour_pressure", "flow.depth", "flow.atmospheric_pressure"),
