@@ -198,7 +198,7 @@ def test_exit_codes_of_errors(capsys: pytest.CaptureFixture[str]) -> None:
     assert show_error(CaseError("wrong")) == ExitCode.CASE_WRONG
     assert show_error(MeshError("inverted")) == ExitCode.FAILED
     assert show_error(ConvergenceError("no solution")) == ExitCode.FAILED
-    assert [int(code) for code in ExitCode] == [0, 1, 2, 3]
+    assert [int(code) for code in ExitCode] == [0, 1, 2, 3, 130]
     assert "error inverted" in capsys.readouterr().err
 
 

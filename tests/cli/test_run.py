@@ -12,6 +12,7 @@ from quietblade.case import Case
 from quietblade.case.presets import preset_text
 from quietblade.cli.main import execute
 from quietblade.cli.progress import ProgressDisplay
+from quietblade.results.lock import locked
 from quietblade.results.store import RunFolder
 from quietblade.study.run import run_key
 from tests.results.synthetic import make_result
@@ -74,3 +75,38 @@ def test_quiet_progress_says_nothing() -> None:
         progress("mesh", 0.0, "")
         progress("mesh", 1.0, "2 s")
     assert out.getvalue() == ""
+
+
+def test_verbose_progress_tells_every_step() -> None:
+    out = io.StringIO()
+    with ProgressDisplay(Console(file=out, width=100), verbose=True) as progress:
+        progress("modes C0", 0.0, "acoustics.band changed")
+        progress("modes C0", None, "11 modes")
+        progress("modes C0", 1.0, "12.0 s")
+    assert out.getvalue().splitlines() == [
+        "modes C0: acoustics.band changed",
+        "modes C0: 11 modes",
+        "modes C0: 12.0 s",
+    ]
+
+
+def test_stopped_run_says_how_to_go_on(
+    case: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def stopped(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("quietblade.study.run.build_mesh", stopped)
+    out = tmp_path / "run"
+    assert execute(["run", str(case), "--out", str(out)]) == 130
+    assert "goes on from there" in capsys.readouterr().err
+    assert "ended by KeyboardInterrupt" in (out / "run.log").read_text(encoding="utf-8")
+    assert not (out / "result.nc").exists()
+
+
+def test_two_runs_into_one_folder_are_refused(
+    case: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with locked(tmp_path / "run"):
+        assert execute(["run", str(case), "--out", str(tmp_path / "run")]) == 3
+    assert "a run is at work here" in capsys.readouterr().err

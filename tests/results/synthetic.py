@@ -504,6 +504,12 @@ def make_run(case_text: str) -> m.RunRecord:
         timings=m.Timings(
             stage=("mesh", "equilibrium", "sweep"), seconds=np.array([4.0, 20.5, 60])
         ),
+        cost=m.Cost(
+            stage=("mesh", "equilibrium", "sweep"),
+            kept=np.array([True, False, False]),
+            memory=np.array([4e8, 1.5e9, np.nan]),
+            factorization=4.0,
+        ),
         solvers=m.SolverReport(
             use=("sweep",),
             solver=("rslab, mixed precision",),

@@ -2,17 +2,22 @@
 """One coarse study from case to files; laws that hold on any mesh."""
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
+from pydantic import BaseModel
 
 from quietblade.case import Case
+from quietblade.case.fields import Words
 from quietblade.case.presets import preset_text
 from quietblade.results.headline import summarise
 from quietblade.results.model import Result, path
 from quietblade.results.store import RunFolder
 from quietblade.results.vtk import field_labels, read_fields
 from quietblade.study.run import finished, paper_blade, run_case
+from quietblade.study.stages import Stage, stages
+from verification.acoustics_resumed import difference
 
 COARSE = {
     "film.span": [0.1, 0.9],
@@ -46,9 +51,51 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> RunFolder:
     return RunFolder(tmp_path_factory.mktemp("run") / "blade")
 
 
+class Watch:
+    """Records which keys of the case each stage reads; a progress callback."""
+
+    def __init__(self, case: Case) -> None:
+        self.seen: dict[str, set[str]] = {}
+        self.said: dict[str, str] = {}
+        self._stage = ""
+        self._places: dict[int, str] = {}
+        self._locate(case, "")
+        for part in ("blade", "film"):
+            self._locate(case.material(part), f"materials.{part}")
+
+    def _locate(self, words: Words, place: str) -> None:
+        self._places[id(words)] = place
+        for name in type(words).model_fields:
+            inner = getattr(words, name)
+            if isinstance(inner, Words):
+                self._locate(inner, f"{place}.{name}".lstrip("."))
+
+    def __call__(self, stage: str, fraction: float | None, message: str) -> None:
+        self._stage = "" if fraction == 1.0 else stage
+        self.said[stage] = message
+
+    def read(self, words: Words, name: str) -> Any:
+        value = BaseModel.__getattribute__(words, name)
+        place = self._places.get(id(words))
+        known = self._stage and place is not None and name in type(words).model_fields
+        if known and not isinstance(value, Words):
+            self.seen.setdefault(self._stage, set()).add(f"{place}.{name}".lstrip("."))
+        return value
+
+
 @pytest.fixture(scope="module")
-def result(case: Case, folder: RunFolder) -> Result:
-    return run_case(case, folder)
+def watch(case: Case) -> Watch:
+    return Watch(case)
+
+
+@pytest.fixture(scope="module")
+def result(case: Case, folder: RunFolder, watch: Watch) -> Result:
+    def read(words: Words, name: str) -> Any:  # a method of Words must be a function
+        return watch.read(words, name)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Words, "__getattribute__", read)
+        return run_case(case, folder, watch)
 
 
 def test_injected_power_is_radiated_or_dissipated(result: Result) -> None:
@@ -210,6 +257,44 @@ def test_finished_run_is_found_and_another_case_is_not(
     assert np.array_equal(found.static.lift, result.static.lift)
     assert finished(case.varied({"flow.speed": "4 m/s"}), folder) is None
     assert finished(case, RunFolder(Path("no-such-run"))) is None
+
+
+def test_stages_read_only_what_they_declare(result: Result, watch: Watch) -> None:
+    # what they stand for is declared: materials by their constants, the cells of the water
+    names = {"blade.material", "film.material", "materials"}
+    stand_ins = {"mesh": {"acoustics.band", "water.sound_speed"}}
+    for name, stage in stages(tuple(result.configurations), stream=False, campbell=False).items():
+        reads = watch.seen.get(name, set()) - names - stand_ins.get(name, set())
+        undeclared = sorted(key for key in reads if not depends(name, key))
+        assert not undeclared, f"{name} reads {undeclared}: add it to quietblade/study/stages.py"
+        assert reads or stage.after, name
+
+
+def depends(name: str, key: str) -> bool:
+    """Whether a stage, or one that it comes after, declares a key, or that it does not matter."""
+    stage = stages(("C0", "C1"))[name]
+    ignored = Stage(stage.ignores).depends_on(key)
+    return ignored or stage.depends_on(key) or any(depends(other, key) for other in stage.after)
+
+
+def test_changed_case_goes_on_from_what_is_kept(
+    result: Result, case: Case, folder: RunFolder
+) -> None:
+    said: dict[str, str] = {}
+    damaged = next(folder.stages.glob("modes-C1-*.pickle"))
+    content = damaged.read_bytes()
+    damaged.write_bytes(content[: len(content) // 2])
+    again = run_case(case, folder, lambda stage, _, message: said.setdefault(stage, message))
+    assert {stage for stage, message in said.items() if message.startswith("kept")} == {
+        "mesh", "flow and structure", "mesh motion", "modes C0", "sweep C0", "sweep C1",
+        "mode tables",
+    }  # fmt: skip
+    assert "damaged" in said["modes C1"]
+    assert any("damaged" in notice.message for notice in again.run.notices.notices())
+    assert again.run.cost.kept.tolist() == [*4 * [True], False, *3 * [True], False]
+    assert difference(result, again) < 1e-10
+    assert len(list(folder.stages.glob("*.pickle"))) == 8
+    assert "modes C1" in folder.log.read_text(encoding="utf-8")
 
 
 def test_papers_blades_are_recognised(case: Case) -> None:

@@ -211,3 +211,19 @@ def _response(model: SphereModel, u: ComplexArray, psi: ComplexArray) -> Complex
     full[: space.Range(1).start] = model.basis.to_dofs(u)
     full[space.Range(2).start :] = model.basis.to_dofs(psi)
     return full[operators.free]
+
+
+@pytest.mark.parametrize("degree", [0, 1, 4, 9])
+def test_radial_factor_is_the_spherical_bessel_function(degree: int) -> None:
+    radius, k = np.linspace(0.05, 1.0, 40), np.array([0.3, 1.9, 2.1, 6.0])
+    factor, slope = radial_factors(radius, k, degree)
+    z = k[:, None] * radius
+    np.testing.assert_allclose(
+        factor * radius**degree, spherical_jn(degree, z), rtol=1e-10, atol=1e-14
+    )
+    np.testing.assert_allclose(
+        -slope * radius ** (degree + 1) / k[:, None],
+        spherical_jn(degree + 1, z),
+        rtol=1e-10,
+        atol=1e-14,
+    )

@@ -231,10 +231,16 @@ class Case(Words):
         return self.model_dump(mode="json", exclude_none=True)
 
     def content_key(self) -> str:
-        """Hash of everything that the result depends on; the same for the same physics.
+        """Hash of everything that the result depends on; the same for the same physics."""
+        text = json.dumps(self.physics(), sort_keys=True, separators=(",", ":"))
+        return hashlib.sha256(text.encode()).hexdigest()
+
+    def physics(self) -> dict[str, Any]:
+        """Return everything that the result depends on, as JSON-able data with SI values.
 
         Titles, comments, the names of materials and materials that are not used do not matter,
-        nor does the unit in which a value is written.
+        nor does the unit in which a value is written. Of the files that the case names, under
+        "files", the content counts, not the name.
         """
         plain = self.plain()
         del plain["title"], plain["materials"], plain["blade"]["material"]
@@ -242,13 +248,12 @@ class Case(Words):
         if self.film is not None:
             del plain["film"]["material"]
             plain["materials"]["film"] = self._physics_of(self.material("film"))
-        # what a file says counts, not its name
         plain["files"] = {
             key: hashlib.sha256(file.read_bytes()).hexdigest() if file.is_file() else ""
             for key, file in self.files.items()
         }
-        text = json.dumps(_rounded(plain), sort_keys=True, separators=(",", ":"))
-        return hashlib.sha256(text.encode()).hexdigest()
+        rounded: dict[str, Any] = _rounded(plain)
+        return rounded
 
     def material(self, part: str) -> SolidWords:
         """Material of a part, ``"blade"`` or ``"film"``, from the case or the library.

@@ -29,6 +29,7 @@ class ExitCode(IntEnum):
     CASE_WRONG = 1
     NOT_CONVERGED = 2
     FAILED = 3
+    STOPPED = 130
 
 
 def show_error(error: QuietbladeError) -> ExitCode:

@@ -73,7 +73,7 @@ def _quietblade(
 ) -> None:
     """Flexible propeller blades in water: deformation, wet modes and radiated sound.
 
-    Exit codes: 0 done, 1 wrong case or command, 2 not converged but kept, 3 failed.
+    Exit codes: 0 done, 1 wrong case or command, 2 not converged but kept, 3 failed, 130 stopped.
     """
 
 
@@ -90,7 +90,7 @@ def execute(arguments: Sequence[str]) -> int:
         return ExitCode.CASE_WRONG
     except (typer.Abort, KeyboardInterrupt):
         error_console.print("stopped")
-        return ExitCode.FAILED
+        return ExitCode.STOPPED
     return int(ended) if isinstance(ended, int) else ExitCode.DONE
 
 

@@ -29,12 +29,15 @@ class ProgressDisplay:
         Where to write.
     quiet : bool
         Write nothing.
+    verbose : bool
+        Write a line for every report.
     """
 
-    def __init__(self, console: Console, *, quiet: bool = False) -> None:
+    def __init__(self, console: Console, *, quiet: bool = False, verbose: bool = False) -> None:
         self._console = console
         self._quiet = quiet
-        self._live = console.is_terminal and not quiet
+        self._verbose = verbose
+        self._live = console.is_terminal and not quiet and not verbose
         self._bars = Progress(
             SpinnerColumn(finished_text="[green]done[/]"),
             TextColumn("{task.description:<22}"),
@@ -84,7 +87,7 @@ class ProgressDisplay:
         ends = fraction == 1.0
         if stage not in self._started:
             self._started[stage] = now
-        elif not ends and now - self._last_line < _LINE_EVERY:
+        elif not ends and not self._verbose and now - self._last_line < _LINE_EVERY:
             return
         self._last_line = now
         line = f"{stage}: {message or '...'}{self._left(stage, fraction, now)}"

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from quietblade.cli.common import ExitCode, console
+from quietblade.cli.common import ExitCode, console, error_console
 from quietblade.cli.progress import ProgressDisplay
 from quietblade.cli.tables import show_tables
 
@@ -19,14 +19,29 @@ def run(
         typer.Option("--out", "-o", help="Folder of the run; default runs/NAME-OF-THE-CASE."),
     ] = None,
     force: Annotated[
-        bool, typer.Option("--force", help="Compute again although the result is there.")
+        bool, typer.Option("--force", help="Compute all stages, whatever an earlier run has kept.")
     ] = False,
+    keep: Annotated[
+        bool,
+        typer.Option(
+            help="Keep what each stage makes in the folder, so that the next run can go on from it."
+        ),
+    ] = True,
     brief: Annotated[
         bool, typer.Option("--brief", help="Leave out the tables; `quietblade show` prints them.")
     ] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Show errors only.")] = False,
+    verbose: Annotated[
+        bool, typer.Option("--verbose", "-v", help="Show every step; run.log has them all.")
+    ] = False,
 ) -> ExitCode:
-    """Compute a case: deformation, wet modes and radiated sound."""
+    """Compute a case: deformation, wet modes and radiated sound.
+
+    A run that was stopped goes on from the last stage that it had finished, and a case that has
+    changed is computed again only from where the change matters.
+
+    Exit codes: 0 done, 1 wrong case or command, 2 not converged but kept, 3 failed, 130 stopped.
+    """
     # many small dense systems: threads of the BLAS would only fight with those of the solvers
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     from quietblade.case import Case  # noqa: PLC0415  # help must stay fast
@@ -42,9 +57,14 @@ def run(
         if not quiet:
             console.print(f"{folder.root} holds the result of this very case; --force computes it")
     else:
-        with ProgressDisplay(console, quiet=quiet) as progress:
-            result = run_case(words, folder, progress=progress)
-            draw_figures(folder, progress)
+        try:
+            with ProgressDisplay(console, quiet=quiet, verbose=verbose) as progress:
+                result = run_case(words, folder, progress, force=force, keep=keep)
+                draw_figures(folder, progress)
+        except KeyboardInterrupt:
+            kept = "what was finished is kept, and the same command goes on from there"
+            error_console.print(f"stopped; {kept}" if keep else "stopped")
+            return ExitCode.STOPPED
     if not quiet:
         if not brief:
             summary = summarise(result)

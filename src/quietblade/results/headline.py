@@ -17,6 +17,7 @@ from quietblade.results.summary import (
     CampbellSummary,
     CellSummary,
     ClaimSummary,
+    CostSummary,
     CrossingSummary,
     FailureSummary,
     MeshSummary,
@@ -79,6 +80,7 @@ def summarise(result: Result) -> Summary:
         mesh=_mesh(result),
         unknowns=int(result.mesh.unknowns.count.sum()),
         timings_s={**seconds, "total": sum(seconds.values())},
+        cost=_cost(result),
         notices=tuple(str(notice) for notice in result.run.notices.notices()),
         claims=tuple(ClaimSummary(**vars(claim)) for claim in judge_claims(result)),
         run=_run(result),
@@ -296,6 +298,15 @@ def _mesh(result: Result) -> MeshSummary:
         cells=tuple(CellSummary(region=r, kind=k, count=n) for r, k, n in cells),
         worst_quality=dict(zip(mesh.quality.region, mesh.quality.worst.tolist(), strict=True)),
         unknowns_by_part=dict(zip(mesh.unknowns.part, mesh.unknowns.count.tolist(), strict=True)),
+    )
+
+
+def _cost(result: Result) -> CostSummary:
+    cost = result.run.cost
+    return CostSummary(
+        factorization_s=cost.factorization,
+        memory_b=dict(zip(cost.stage, cost.memory.tolist(), strict=True)),
+        kept=tuple(np.array(cost.stage)[cost.kept].tolist()),
     )
 
 

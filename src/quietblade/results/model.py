@@ -523,6 +523,17 @@ class Timings(Record):
 
 
 @dataclass(frozen=True, eq=False)
+class Cost(Record):
+    """What the stages of `Timings` cost besides time."""
+
+    group: ClassVar[str] = "run/cost"
+    stage: tuple[str, ...]
+    kept: BoolArray
+    memory: FloatArray
+    factorization: float = NAN
+
+
+@dataclass(frozen=True, eq=False)
 class SolverReport(Record):
     """Linear solvers by use."""
 
@@ -586,6 +597,7 @@ class RunRecord(Record):
     case_text: str
     packages: Packages
     timings: Timings
+    cost: Cost
     solvers: SolverReport
     fallbacks: Fallbacks
     notices: NoticeTable

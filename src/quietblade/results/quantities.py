@@ -580,6 +580,14 @@ _GROUPS: dict[str, tuple[Quantity, ...]] = {
         _text("stage", "stage", "stage of the run"),
         _q("seconds", "t", "s", "stage", "wall-clock time of the stage"),
     ),
+    "run/cost": (
+        _text("stage", "stage", "stage of the run"),
+        _q("kept", "", "", "stage", "whether it was taken from an earlier run, whose time counts",
+           kind="flag"),
+        _q("memory", "", "B", "stage", "largest memory of the process until its end, or NaN"),
+        _q("factorization", "", "s", "",
+           "mean wall-clock time of one factorisation of the coupled matrix, analysis included"),
+    ),
     "run/solvers": (
         _text("use", "use", "what was solved"),
         _text("solver", "use", "solver and precision"),

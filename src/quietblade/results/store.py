@@ -44,6 +44,16 @@ class RunFolder:
         return self.root / "figures"
 
     @property
+    def stages(self) -> Path:
+        """Folder of what the stages of a run have made, for the next run."""
+        return self.root / "stages"
+
+    @property
+    def log(self) -> Path:
+        """``run.log``: what was done when, in this run and those before it."""
+        return self.root / "run.log"
+
+    @property
     def static_fields(self) -> Path:
         """Solid in C0 with displacement, film shear strain and pressure."""
         return self.root / "fields" / "static.vtu"

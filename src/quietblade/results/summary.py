@@ -361,6 +361,14 @@ class RunSummary(_Part):
     fallbacks: tuple[str, ...] = _of("run/fallbacks/event")
 
 
+class CostSummary(_Part):
+    """What the stages cost."""
+
+    factorization_s: Number = _of("run/cost/factorization")
+    memory_b: dict[str, Number] = _of("run/cost/memory", "by stage")
+    kept: tuple[str, ...] = Field(description="stages that an earlier run has computed")
+
+
 class Summary(_Part):
     """The headline figures of a run."""
 
@@ -384,6 +392,7 @@ class Summary(_Part):
     mesh: MeshSummary
     unknowns: int = Field(description="free unknowns of step 2")
     timings_s: dict[str, float] = _of("run/timings/seconds", "and their sum as `total`")
+    cost: CostSummary
     notices: tuple[str, ...] = Field(description="warnings")
     claims: tuple[ClaimSummary, ...] = Field(
         description="claims of the paper; empty unless the case stands for one of its blades"

@@ -26,6 +26,7 @@ def summary_tables(summary: Summary) -> tuple[Table, ...]:
         transfer_table(summary),
         _claims(summary),
         _checks(summary),
+        _time(summary),
         _run(summary),
     ]
     if summary.notices:
@@ -307,13 +308,32 @@ def _sweep_check(summary: Summary) -> tuple[str, str]:
     return "Linear solves, worst residual", number(summary.balance.max_solver_residual, ".1e")
 
 
+def _time(summary: Summary) -> Table:
+    """Stages beside one factorisation of the coupled matrix, the unit of all direct methods."""
+    cost = summary.cost
+    rows = [
+        (
+            name,
+            number(seconds, ".1f"),
+            number(seconds / cost.factorization_s if cost.factorization_s else None, ".1f"),
+            number(_times(1e-9, cost.memory_b.get(name)), ".2f"),
+            "kept from an earlier run" if name in cost.kept else "",
+        )
+        for name, seconds in summary.timings_s.items()
+    ]
+    note = (
+        f"one factorisation of the coupled matrix takes {number(cost.factorization_s, '.2f')} s, "
+        "its analysis included; memory is the process's largest until the end of the stage"
+    )
+    heads = ("Stage", "Time [s]", "in factorisations", "memory [GB]", "")
+    return Table("Time", heads, tuple(rows), note)
+
+
 def _run(summary: Summary) -> Table:
     cells = ", ".join(f"{c.region} {c.count} {c.kind}" for c in summary.mesh.cells)
-    stages = ", ".join(f"{name} {t:.1f}" for name, t in summary.timings_s.items())
     rows = [
         ("Mesh", f"{summary.mesh.nodes} nodes; {cells}"),
         ("Unknowns", str(summary.unknowns)),
-        ("Time [s]", stages),
         ("Solvers", "; ".join(summary.run.solvers)),
         *(("Change of solver", text) for text in _condensed(summary.run.fallbacks)),
         ("Version", f"quietblade {summary.run.code_version} on {summary.run.platform}"),

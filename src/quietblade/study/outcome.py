@@ -2,7 +2,7 @@
 """From the artefacts of a run to its registered result."""
 
 import platform
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from datetime import UTC, datetime
 from importlib.metadata import version
@@ -37,8 +37,10 @@ from quietblade.study.excitation_outcome import (
     outgoing_by_degree,
     transfer_table,
 )
+from quietblade.study.keeping import Lap
 from quietblade.study.mode_tables import ModeTables
 from quietblade.study.sound import Sound
+from quietblade.study.stages import PACKAGES
 from quietblade.study.statics import Statics
 from quietblade.study.transfer import drive_point_mobility
 from quietblade.study.translate import environment
@@ -47,9 +49,6 @@ from quietblade.study.vibration import Vibration
 from quietblade.study.viscous import ViscousFlow
 from quietblade.typing import FloatArray
 from quietblade.vibroacoustics.power import level
-
-PACKAGES = ("ngsolve", "gmsh", "rslab", "numpy", "scipy", "xarray", "h5netcdf")
-"""Packages that the numbers depend on."""
 
 
 def static_result(case: Case, statics: Statics) -> model.StaticResult:
@@ -350,7 +349,8 @@ def mesh_result(mesh: Mesh, vibration: Vibration) -> model.MeshResult:
 def run_record(
     case_text: str,
     content_key: str,
-    seconds: Mapping[str, float],
+    laps: Mapping[str, Lap],
+    sweeps: Iterable[LinearReport],
     reports: Mapping[str, LinearReport],
     notices: tuple[Notice, ...],
 ) -> model.RunRecord:
@@ -364,7 +364,13 @@ def run_record(
         content_key=content_key,
         case_text=case_text,
         packages=model.Packages(tuple(versions), tuple(versions.values())),
-        timings=model.Timings(tuple(seconds), np.array(list(seconds.values()))),
+        timings=model.Timings(tuple(laps), np.array([lap.seconds for lap in laps.values()])),
+        cost=model.Cost(
+            tuple(laps),
+            np.array([lap.kept for lap in laps.values()]),
+            np.array([lap.memory for lap in laps.values()]),
+            _factorization(sweeps),
+        ),
         solvers=_solver_table(reports),
         fallbacks=model.Fallbacks(
             tuple(
@@ -375,6 +381,13 @@ def run_record(
         ),
         notices=model.NoticeTable.of(notices),
     )
+
+
+def _factorization(sweeps: Iterable[LinearReport]) -> float:
+    """Mean time of one factorisation [s], the analysis included."""
+    reports = list(sweeps)
+    count = sum(sum(report.factorizations.values()) for report in reports)
+    return sum(report.seconds for report in reports) / count if count else float("nan")
 
 
 def _solver_table(reports: Mapping[str, LinearReport]) -> model.SolverReport:

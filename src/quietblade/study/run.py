@@ -2,6 +2,7 @@
 """The whole study of a case: the only place that knows the order of the stages."""
 
 import hashlib
+from functools import partial
 from itertools import chain
 
 import ngsolve as ngs
@@ -10,21 +11,29 @@ from quietblade import __version__
 from quietblade.case import Case
 from quietblade.case.presets import PRESETS, preset_text
 from quietblade.errors import Notice
+from quietblade.geometry import Blade
 from quietblade.linalg import default_threads
 from quietblade.mesh import Mesh, build_mesh
 from quietblade.mesh.motion import MeshMotion, solve_mesh_motion
+from quietblade.mesh.nodal import NodalBasis
+from quietblade.propulsion.linear import newton_solver
+from quietblade.propulsion.structure import Structure
 from quietblade.results import mode_records as records
 from quietblade.results.files import ResultError
+from quietblade.results.lock import locked
 from quietblade.results.model import Result
 from quietblade.results.store import RunFolder
 from quietblade.study import losses, outcome, translate
 from quietblade.study.campbell import solve_campbell
-from quietblade.study.clock import Clock
+from quietblade.study.clock import Stages
 from quietblade.study.fields import write_static_fields, write_vibration_fields
+from quietblade.study.keeping import Makers, StageStore
+from quietblade.study.log import logging_to
 from quietblade.study.mode_tables import mode_tables
-from quietblade.study.preflight import preflight
+from quietblade.study.preflight import Preflight, preflight
 from quietblade.study.sound import Sound, solve_sound
-from quietblade.study.statics import Statics, solve_statics
+from quietblade.study.stages import origins
+from quietblade.study.statics import Statics, build_structure, solve_statics
 from quietblade.study.vibration import Vibration, frequencies, solve_vibration
 from quietblade.study.viscous import singing
 from quietblade.typing import Progress, silent
@@ -44,8 +53,18 @@ def finished(case: Case, folder: RunFolder) -> Result | None:
     return result if result.run.content_key == run_key(case) else None
 
 
-def run_case(case: Case, folder: RunFolder, progress: Progress = silent) -> Result:
+def run_case(
+    case: Case,
+    folder: RunFolder,
+    progress: Progress = silent,
+    *,
+    force: bool = False,
+    keep: bool = True,
+) -> Result:
     """Compute a case and write everything into its folder.
+
+    Stages that an earlier run of the folder has finished, and on which nothing has changed since,
+    are not computed again.
 
     Parameters
     ----------
@@ -53,6 +72,10 @@ def run_case(case: Case, folder: RunFolder, progress: Progress = silent) -> Resu
     folder : RunFolder
         Made if need be; files of an earlier run are replaced.
     progress : callable
+    force : bool
+        Compute all stages.
+    keep : bool
+        Keep what the stages make, and use what is kept.
 
     Returns
     -------
@@ -62,38 +85,58 @@ def run_case(case: Case, folder: RunFolder, progress: Progress = silent) -> Resu
     ------
     CaseError
         The case cannot be.
+    ResultError
+        Another run is at work in the folder.
     QuietbladeError
         A stage failed.
     """
     ngs.SetNumThreads(default_threads())
-    clock = Clock(progress)
     facts = preflight(case)
-    folder.root.mkdir(parents=True, exist_ok=True)
-    with clock.stage("mesh"):
-        mesh = build_mesh(facts.blade, translate.mesh_spec(case))
-        _ = mesh.basis
-    with clock.stage("flow and structure") as report:
-        statics = solve_statics(case, facts.blade, mesh, report)
-    motions = _motions(case, mesh, statics, clock)
-    vibrations: dict[str, Vibration] = {}
-    for name, motion in motions.items():
-        with clock.stage(f"modes {name}") as report:
-            vibrations[name] = solve_vibration(case, facts.blade, mesh, statics, motion, report)
+    with locked(folder.root), logging_to(folder.log, progress) as report:
+        store = StageStore(folder.stages) if keep else None
+        stages = Stages(report, origins(case), store, force=force)
+        result = _run(case, facts, folder, stages)
+    return result
+
+
+def _run(case: Case, facts: Preflight, folder: RunFolder, stages: Stages) -> Result:
+    """All stages, then everything that is made from what they found."""
+    blade = facts.blade
+    mesh = stages.make("mesh", lambda _: build_mesh(blade, translate.mesh_spec(case)))
+    parts: Makers = {
+        Mesh: lambda: mesh,
+        ngs.Mesh: lambda: mesh.fem,
+        NodalBasis: lambda: mesh.basis,
+        Blade: lambda: blade,
+        Structure: lambda: build_structure(case, blade, mesh, newton_solver()),
+    }
+    statics = stages.make(
+        "flow and structure", lambda report: solve_statics(case, blade, mesh, report), parts
+    )
+    motions: dict[str, MeshMotion | None] = {
+        name: _motion(case, mesh, statics, stages) if name == "C1" else None
+        for name in case.acoustics.configurations
+    }
+    vibrations = {
+        name: stages.make(
+            f"modes {name}", partial(solve_vibration, case, blade, mesh, statics, motion), parts
+        )
+        for name, motion in motions.items()
+    }
     grid = frequencies(case, list(vibrations.values()))
-    sounds: dict[str, Sound] = {}
-    for name, vibration in vibrations.items():
-        with clock.stage(f"sweep {name}") as report:
-            sounds[name] = solve_sound(case, vibration, grid, report)
-    with clock.stage("mode tables") as report:
-        tables = mode_tables(case, mesh, vibrations, sounds, report)
+    sounds = {
+        name: stages.make(f"sweep {name}", partial(solve_sound, case, vibration, grid), parts)
+        for name, vibration in vibrations.items()
+    }
+    tables = stages.make(
+        "mode tables", lambda report: mode_tables(case, mesh, vibrations, sounds, report), parts
+    )
     diagram = records.CampbellDiagram.none()
     diagram_notices: tuple[Notice, ...] = ()
     if case.campbell is not None:
-        with clock.stage("Campbell diagram") as report:
-            diagram, diagram_notices = solve_campbell(
-                case, case.campbell, facts.blade, mesh, report
-            )
-    with clock.stage("files"):
+        solve = partial(solve_campbell, case, case.campbell, blade, mesh)
+        diagram, diagram_notices = stages.make("Campbell diagram", solve, parts)
+    with stages.stage("files"):
         write_static_fields(mesh, statics, folder)
         for name, vibration in vibrations.items():
             write_vibration_fields(mesh, vibration, sounds[name], folder)
@@ -104,6 +147,7 @@ def run_case(case: Case, folder: RunFolder, progress: Progress = silent) -> Resu
         *_singing(statics, vibrations),
         *chain.from_iterable(_step2_notices(motions[n], vibrations[n], sounds[n]) for n in motions),
         *diagram_notices,
+        *stages.notices,
     )
     reports = {
         "flow and structure": statics.solver,
@@ -123,7 +167,8 @@ def run_case(case: Case, folder: RunFolder, progress: Progress = silent) -> Resu
         run=outcome.run_record(
             case.text,
             run_key(case),
-            clock.seconds,
+            stages.laps,
+            [sound.report for sound in sounds.values()],
             reports,
             notices,
         ),
@@ -153,19 +198,11 @@ def _stated(case: Case) -> tuple[object, ...]:
     return shape, flow, case.material("blade")
 
 
-def _motions(
-    case: Case, mesh: Mesh, statics: Statics, clock: Clock
-) -> dict[str, MeshMotion | None]:
-    """Mesh motion of each wanted configuration; none at rest."""
-    motions: dict[str, MeshMotion | None] = {}
-    for name in case.acoustics.configurations:
-        if name == "C0":
-            motions[name] = None
-            continue
-        with clock.stage("mesh motion"):
-            displacement = statics.state.displacement
-            motions[name] = solve_mesh_motion(mesh, displacement, case.acoustics.gap)
-    return motions
+def _motion(case: Case, mesh: Mesh, statics: Statics, stages: Stages) -> MeshMotion:
+    displacement = statics.state.displacement
+    return stages.make(
+        "mesh motion", lambda _: solve_mesh_motion(mesh, displacement, case.acoustics.gap)
+    )
 
 
 def _singing(statics: Statics, vibrations: dict[str, Vibration]) -> tuple[Notice, ...]:

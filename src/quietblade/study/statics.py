@@ -121,6 +121,20 @@ def _failure_notices(region: RegionStress) -> Iterator[Notice]:
             )
 
 
+def build_structure(case: Case, blade: Blade, mesh: Mesh, solver: SparseSolver) -> Structure:
+    """Make the solid of a case: materials, support and spin."""
+    springs = support(case)
+    return Structure(
+        mesh.fem,
+        solids.build_materials(case, blade, mesh.basis),
+        clamped="root" if springs is None else None,
+        support=springs,
+        spin=translate.spin(case),
+        basis=mesh.basis,
+        solver=solver,
+    )
+
+
 def solve_equilibrium(
     case: Case,
     blade: Blade,
@@ -131,16 +145,7 @@ def solve_equilibrium(
     progress: Progress,
 ) -> tuple[Structure, AppliedLoads | None, StaticState]:
     """Find the blade that a case describes under its own lift, with its structure and loads."""
-    springs = support(case)
-    structure = Structure(
-        mesh.fem,
-        solids.build_materials(case, blade, mesh.basis),
-        clamped="root" if springs is None else None,
-        support=springs,
-        spin=translate.spin(case),
-        basis=mesh.basis,
-        solver=solver,
-    )
+    structure = build_structure(case, blade, mesh, solver)
     loads = apply_loads(structure, steady_loads(case, blade), blade=blade) if case.loads else None
     stations = np.linspace(0.0, 1.0, case.flow.sections)
     sections = blade.section(stations, case.flow.section_nodes)

@@ -17,6 +17,7 @@ from quietblade.mesh.motion import MeshMotion
 from quietblade.propulsion.structure import Structure, StructureState
 from quietblade.propulsion.tangent import Tangent, compute_tangent
 from quietblade.study import losses, translate
+from quietblade.study.clock import within
 from quietblade.study.excitations import Excited, excite, needs_root, root_centre
 from quietblade.study.frames import SectionFrames
 from quietblade.study.statics import Statics
@@ -35,6 +36,10 @@ from quietblade.vibroacoustics.root import RootedSystem, add_root
 ABOVE_BAND = 1.2
 """Wet modes are sought up to this multiple of the band's upper end, so that a mode that the
 static load moves into the band keeps its name."""
+
+SPACE_TOLERANCE = 1e-6
+"""Residual of the solves that make the space of a reduced sweep.  They say where the solutions
+lie, not what they are: these, and the estimate of their error, come from the matrices."""
 
 FAST_SPIN = 0.05
 """Ratio 2 omega_p / omega_1 beyond which the neglected Coriolis force is noticed."""
@@ -192,7 +197,7 @@ def solve_vibration(
             translate.base_frequencies(case),
             power=excited.powers,
             tolerance=case.acoustics.accuracy,
-            solver=symmetric_solver(case),
+            solver=symmetric_solver(case, tolerance=SPACE_TOLERANCE),
             progress=progress,
         )
     shapes = frames.shapes(nodal_shapes(mesh, operators, modes.vectors))
@@ -205,7 +210,7 @@ def solve_vibration(
         solver=symmetric_solver(case),
         space=sweep.model.space if sweep else None,
         factor=sweep.factor if sweep else None,
-        progress=progress,
+        progress=within(progress, 0.8, 1.0),
     )
     return Vibration(
         name=name,
@@ -254,12 +259,14 @@ def _refined(case: Case, vibrations: list[Vibration]) -> FloatArray:
     )
 
 
-def symmetric_solver(case: Case, *, precision: Precision | None = None) -> SolverChain:
-    """Make the solver of the case for systems of step 2."""
+def symmetric_solver(
+    case: Case, *, precision: Precision | None = None, tolerance: float = 0.0
+) -> SolverChain:
+    """Make the solver of the case for systems of step 2; of the tolerances the larger counts."""
     return make_solver(
         case.solver.name,
         precision=precision or case.solver.precision,
-        tolerance=case.solver.tolerance,
+        tolerance=max(case.solver.tolerance, tolerance),
     )
 
 

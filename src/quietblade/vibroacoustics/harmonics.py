@@ -12,6 +12,9 @@ from scipy.special import factorial, spherical_jn, spherical_yn
 
 from quietblade.typing import ComplexArray, FloatArray
 
+_NEAR = 2.0  # k r up to which the power series is used
+_TERMS = 12  # of it: the next one is below rounding
+
 
 def solid_harmonics(points: FloatArray, degree: int) -> tuple[FloatArray, FloatArray]:
     """Real orthonormal solid harmonics of one degree, and their gradients.
@@ -87,13 +90,16 @@ def radial_factors(
 
 
 def _bessel_over_power(radius: FloatArray, k: FloatArray, degree: int) -> FloatArray:
+    """j_l(k r)/r^l, by its power series (DLMF 10.53.1) on bodies smaller than a third of a wave."""
     z = k * radius
-    near = z < 1e-2
-    series = 1.0 - z**2 / (2 * (2 * degree + 3)) * (1.0 - z**2 / (4 * (2 * degree + 5)))
-    centre = k**degree / prod(range(1, 2 * degree + 2, 2)) * series
-    away = np.where(near, 1.0, radius)
-    far = spherical_jn(degree, np.where(near, 1.0, z)) / away**degree
-    return np.where(near, centre, far)
+    squared, series = -0.5 * z**2, np.ones_like(z)
+    for n in range(_TERMS, 0, -1):
+        series = 1.0 + squared / (n * (2 * (degree + n) + 1)) * series
+    value = np.asarray(k**degree / prod(range(1, 2 * degree + 2, 2)) * series)
+    far = z > _NEAR
+    if far.any():  # SciPy's function costs as much as ten series
+        value[far] = spherical_jn(degree, z[far]) / np.broadcast_to(radius, z.shape)[far] ** degree
+    return value
 
 
 def _reduced_legendre(points: FloatArray, degree: int) -> FloatArray:

@@ -3,6 +3,7 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import scipy.linalg
@@ -41,15 +42,28 @@ class Projection:
         blocks = operators.blocks
         moving = np.concatenate([blocks.u, blocks.p, blocks.strips])
         self._fields = (moving, blocks.water, blocks.held)
-        self._mass = operators.terms["M"][self._fields[0]][:, self._fields[0]]
+        self._prepare()
         self._columns = [np.zeros((0, len(field))) for field in self._fields]  # rows are columns
         self._count = [0] * len(self._fields)
         self._field = np.zeros(0, dtype=np.int64)  # of each column, in the order of entry
-        self._whole = {
-            name: _Term.of(operators.terms[name], self._fields) for name in operators.factors(1.0)
-        }
         self._terms = {name: np.zeros((0, 0)) for name in self._whole}
         self._append([(_HELD, unit) for unit in np.eye(len(blocks.held))])
+
+    def _prepare(self) -> None:
+        """Make what only depends on the operators."""
+        terms, moving = self._operators.terms, self._fields[0]
+        self._mass = terms["M"][moving][:, moving]
+        self._whole = {
+            name: _Term.of(terms[name], self._fields) for name in self._operators.factors(1.0)
+        }
+
+    def __getstate__(self) -> dict[str, Any]:
+        made = ("_mass", "_whole")  # as large as the operators, and made faster than read
+        return {name: value for name, value in vars(self).items() if name not in made}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        vars(self).update(state)
+        self._prepare()
 
     def copy(self) -> "Projection":
         """Space with the same columns, which grows on its own."""

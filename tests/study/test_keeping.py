@@ -1,0 +1,169 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Kept results: whole or not there, made again where they are damaged, harmless to read."""
+
+import os
+import subprocess
+import sys
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from types import MappingProxyType
+
+import numpy as np
+import pytest
+from scipy.sparse import csr_matrix
+
+from quietblade.linalg import SolverReport
+from quietblade.mesh.model import CellBlock, Mesh, Quality
+from quietblade.results.files import ResultError
+from quietblade.results.lock import locked
+from quietblade.study.clock import Stages
+from quietblade.study.keeping import DamagedError, Lap, StageStore
+from quietblade.study.stages import Origin
+
+ORIGIN = Origin({"mesh.size": 0.1, "acoustics.band": [100.0, 200.0]}, {}, {"quietblade": "1"})
+LAP = Lap(1.5, 2e8)
+
+
+def mesh() -> Mesh:
+    return Mesh(
+        np.arange(12.0).reshape(4, 3),
+        MappingProxyType({"blade": (CellBlock("tetra10", np.zeros((1, 10), dtype=np.int64)),)}),
+        {"wet": np.zeros((2, 6), dtype=np.int64)},
+        np.zeros(3),
+        1.0,
+        {"blade": Quality(0.5, 0.7, 0.9)},
+    )
+
+
+def test_arrays_records_and_shared_parts_come_back(tmp_path: Path) -> None:
+    store, array = StageStore(tmp_path), np.linspace(0.0, 1.0, 5)
+    made = {"a": array, "b": array, "z": csr_matrix(np.eye(3)), "mesh": mesh(), "x": 1 + 2j}
+    store.keep("mesh", ORIGIN, LAP, made, {})
+    again = store.read("mesh", {})
+    assert again["a"] is again["b"]
+    np.testing.assert_array_equal(again["a"], array)
+    np.testing.assert_array_equal(again["z"].toarray(), np.eye(3))
+    assert again["mesh"].quality == {"blade": Quality(0.5, 0.7, 0.9)}
+    assert again["mesh"].cells["blade"][0].kind == "tetra10"
+    known = store.known("mesh")
+    assert known is not None
+    assert (known.origin, known.lap) == (ORIGIN, Lap(1.5, 2e8, kept=True))
+
+
+def test_what_is_made_again_is_left_out_and_caches_too(tmp_path: Path) -> None:
+    store, whole = StageStore(tmp_path), mesh()
+    report = SolverReport({}, {}, 0.0, 0, (), 0.0, 0)
+    store.keep("modes C0", ORIGIN, LAP, [whole, whole, report], {Mesh: lambda: None})
+    other = mesh()
+    first, second, kept = store.read("modes C0", {Mesh: lambda: other})
+    assert first is other
+    assert second is other
+    assert kept == report
+
+
+def test_only_the_newest_result_of_a_stage_stays(tmp_path: Path) -> None:
+    store = StageStore(tmp_path)
+    store.keep("modes C0", ORIGIN, LAP, 1, {})
+    store.keep("modes C0", Origin({"mesh.size": 0.2}, {}, {}), LAP, 2, {})
+    store.keep("modes C1", ORIGIN, LAP, 3, {})
+    (tmp_path / ".123-modes-C0-abc.pickle").write_bytes(b"half")
+    assert store.read("modes C0", {}) == 2
+    store.tidy(["modes C0"])
+    assert {file.suffix for file in tmp_path.iterdir()} == {".json", ".pickle"}
+    assert {file.name[:8] for file in tmp_path.iterdir()} == {"modes-C0"}
+
+
+@pytest.mark.parametrize("damage", ["cut", "bit", "gone", "card"])
+def test_damage_is_seen_and_the_stage_computed_again(tmp_path: Path, damage: str) -> None:
+    store = StageStore(tmp_path)
+    store.keep("mesh", ORIGIN, LAP, np.ones(100), {})
+    (content,) = tmp_path.glob("*.pickle")
+    raw = bytearray(content.read_bytes())
+    match damage:
+        case "cut":
+            content.write_bytes(raw[:-10])
+        case "bit":
+            raw[-20] ^= 1
+            content.write_bytes(raw)
+        case "gone":
+            content.unlink()
+        case "card":
+            (tmp_path / "mesh.json").write_text("{")
+    said: list[str] = []
+    stages = Stages(lambda _, __, message: said.append(message), {"mesh": ORIGIN}, store)
+    made = stages.make("mesh", lambda _: np.full(100, 2.0))
+    assert made[0] == 2.0
+    assert bool(stages.notices) == (damage != "card")
+    assert not stages.laps["mesh"].kept
+    assert np.all(store.read("mesh", {}) == 2.0)
+
+
+def test_stages_are_kept_and_forced(tmp_path: Path) -> None:
+    def made(force: bool) -> tuple[int, bool]:
+        stages = Stages(lambda *_: None, {"mesh": ORIGIN}, StageStore(tmp_path / "s"), force=force)
+        value = stages.make("mesh", lambda _: next(numbers))
+        return value, stages.laps["mesh"].kept
+
+    numbers = iter(range(10))
+    assert made(False) == (0, False)
+    assert made(False) == (0, True)
+    assert made(True) == (1, False)
+    assert made(False) == (1, True)
+
+
+def test_full_disk_ends_no_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("quietblade.results.files.os.fsync", full)
+    store = StageStore(tmp_path)
+    stages = Stages(lambda *_: None, {"mesh": ORIGIN}, store)
+    assert stages.make("mesh", lambda _: 1) == 1
+    assert "No space left" in stages.notices[0].message
+    assert store.known("mesh") is None
+    assert list(tmp_path.iterdir()) == []
+
+
+@dataclass(frozen=True)
+class Stranger:
+    """Not of the package."""
+
+    value: int = 1
+
+    @cached_property
+    def twice(self) -> int:
+        return 2 * self.value
+
+
+class Evil:
+    def __reduce__(self) -> tuple[object, tuple[str]]:
+        return os.system, ("touch evil",)
+
+
+@pytest.mark.parametrize("content", [Evil(), Stranger(), print])
+def test_reading_runs_nothing_of_others(tmp_path: Path, content: object) -> None:
+    store = StageStore(tmp_path)
+    store.keep("mesh", ORIGIN, LAP, content, {})
+    with pytest.raises(DamagedError, match="no place"):
+        store.read("mesh", {})
+    assert not Path("evil").exists()
+
+
+def test_second_run_in_a_folder_is_refused_and_a_killed_one_leaves_it_free(tmp_path: Path) -> None:
+    program = (
+        "import sys, time; from pathlib import Path\n"
+        "from quietblade.results.lock import locked\n"
+        f"with locked(Path({str(tmp_path)!r})):\n"
+        "    print('held', flush=True); time.sleep(60)\n"
+    )
+    with subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE) as other:
+        assert other.stdout is not None
+        assert other.stdout.readline() == b"held\n"
+        with pytest.raises(ResultError, match=f"process {other.pid} on .*--out"), locked(tmp_path):
+            pass
+        other.kill()
+    with locked(tmp_path):
+        pass
+    with locked(tmp_path), pytest.raises(ResultError, match="at work"), locked(tmp_path):
+        pass
