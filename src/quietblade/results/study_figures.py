@@ -4,9 +4,12 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+import numpy as np
+
 from quietblade.results.claims import judge_claims
 from quietblade.results.headline import summarise
 from quietblade.results.model import Result
+from quietblade.results.peaks import find_peaks
 from quietblade.results.summary import ModeSummary, Summary
 
 NAN = float("nan")
@@ -40,7 +43,13 @@ def headline_figures(result: Result) -> tuple[Figure, ...]:
     Those of modes are named by configuration, mode and what they are: ``C1_T2_peak_level``.
     """
     summary = summarise(result)
-    return (*_static(summary), *_modes(summary), *_sound(summary), *_cost(summary))
+    return (
+        *_static(summary),
+        *_modes(summary),
+        *_stepped(result),
+        *_sound(summary),
+        *_cost(summary),
+    )
 
 
 def all_figures(result: Result) -> dict[str, float]:
@@ -115,6 +124,23 @@ def _mode(configuration: str, mode: ModeSummary) -> Iterator[Figure]:
     yield Figure(
         f"{start}_peak_width", _number(mode.peak_width_hz), "Hz", f"half-power width of {of}"
     )
+
+
+def _stepped(result: Result) -> Iterator[Figure]:
+    """Peaks as sweeps in even steps would show them."""
+    for name, configuration in result.configurations.items():
+        table, frequencies = configuration.stepped, configuration.peaks.frequency
+        for mode, peak in find_peaks(configuration).items():
+            row = int(np.argmin(np.abs(frequencies - peak.frequency)))
+            for column, step in enumerate(table.step):
+                start = f"{name}_{mode}_peak_level_{step:g}_Hz"
+                meaning = f"peak of {mode} on {name} in steps of {step:g} Hz"
+                for end, levels, how in (
+                    ("", table.power_level, "from the band's lower end"),
+                    ("_worst", table.worst_level, "most unluckily placed"),
+                ):
+                    value = float(levels[row, column])
+                    yield Figure(start + end, value, "dB re 1 pW", f"{meaning}, {how}")
 
 
 def _sound(summary: Summary) -> Iterator[Figure]:

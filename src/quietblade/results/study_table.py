@@ -88,7 +88,7 @@ class StudyTable:
         return tuple(dict.fromkeys(key for row in self.rows for key in row.changes))
 
     def to_dataset(self) -> xr.Dataset:
-        """Labelled arrays along the dimension ``run``; changes are texts named ``set KEY``."""
+        """Labelled arrays along the dimension ``run``; changes are texts named ``set_KEY``."""
         labels = {
             "run": [row.run for row in self.rows],
             "case": ("run", [row.case for row in self.rows]),
@@ -97,7 +97,7 @@ class StudyTable:
             "message": ("run", [row.message for row in self.rows]),
         }
         labels |= {
-            f"set {key}": ("run", [row.changes.get(key, "") for row in self.rows])
+            f"set_{key}": ("run", [row.changes.get(key, "") for row in self.rows])
             for key in self.keys()
         }
         variables = {
@@ -126,9 +126,9 @@ class StudyTable:
         for k in range(data.sizes["run"]):
             text = {str(name): str(data[name].values[k]) for name in data.coords if name != "run"}
             changes = {
-                name.removeprefix("set "): value
+                name.removeprefix("set_"): value
                 for name, value in text.items()
-                if name.startswith("set ") and value
+                if name.startswith("set_") and value
             }
             figures = tuple(
                 Figure(

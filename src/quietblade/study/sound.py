@@ -17,6 +17,7 @@ from quietblade.vibroacoustics.peaks import Peaks, find_peaks, peaks_on_grid
 from quietblade.vibroacoustics.power import PowerBudget, dissipated_by_region, power_budget
 from quietblade.vibroacoustics.radiation_check import radiation_notices
 from quietblade.vibroacoustics.reduced import Certificate
+from quietblade.vibroacoustics.stepped import SteppedPeaks, stepped_peaks
 from quietblade.vibroacoustics.sweep import solve_response
 
 
@@ -55,6 +56,8 @@ class Sound:
         What leaves, and where to.
     certificate : Certificate or None
         Of a reduced sweep.
+    stepped : SteppedPeaks or None
+        The peaks of a reduced sweep as sweeps in even steps would show them.
     notices : tuple of Notice
     """
 
@@ -73,6 +76,7 @@ class Sound:
     far: FarField
     failures: Mapping[float, str] = field(default_factory=dict)
     certificate: Certificate | None = None
+    stepped: SteppedPeaks | None = None
     notices: tuple[Notice, ...] = ()
 
 
@@ -158,6 +162,9 @@ def _reduced(case: Case, vibration: Vibration, frequency: FloatArray, progress: 
         Samples(asked, (at_asked,), sources, columns),
         len(peaks.frequency),
     )
+    stepped = stepped_peaks(
+        lambda f: model.radiated(2.0 * np.pi * f), peaks.frequency, case.acoustics.band
+    )
     nearest = _nearest(frequency, vibration.damped.frequency)
     return Sound(
         name=vibration.name,
@@ -174,6 +181,7 @@ def _reduced(case: Case, vibration: Vibration, frequency: FloatArray, progress: 
         peaks=peaks,
         far=far,
         certificate=sweep.certificate,
+        stepped=stepped,
         notices=(
             *waves.notices(),
             *radiation_notices(operators.condition, operators.radius, waves),
