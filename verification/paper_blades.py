@@ -60,7 +60,7 @@ CLAIMS = (
 
 _OPEN = "Not met as the cases stand; docs/calibration.md has what is known of it. "
 _FILM = "Extent and thickness of the film, which the paper leaves open, move it. "
-_MIXED = "T2 mixes with the edgewise mode beside it under load: where that lies decides. "
+_MIXED = "Under load another mode mixes into T2: its likeness (MAC) tells how far. "
 EXPLANATIONS = {
     "aluminium": {
         "film-shear-strain": f"{_OPEN}{_FILM}",

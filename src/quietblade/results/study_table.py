@@ -158,13 +158,17 @@ class StudyTable:
     def table(self) -> Table:
         """Table of the figures that are shown."""
         columns = self.columns()
-        shown = [columns[name] for name in self.shown if name in columns]
-        heads = ("run", "", *(f"{f.name} [{f.unit}]" for f in shown))
+        known = [
+            n.replace("_", " ") + (f" [{columns[n].unit}]" if n in columns else "")
+            for n in self.shown
+        ]
         rows = tuple(
-            (row.run, row.state, *(number(_finite(row.figure(f.name))) for f in shown))
+            (row.run, row.state, *(number(_finite(row.figure(n)), ".5g") for n in self.shown))
             for row in self.rows
         )
-        return Table("Runs", heads, rows)
+        missing = [name for name in self.shown if name not in columns]
+        note = f"no run has {', '.join(missing)}; study.csv names the figures" if missing else ""
+        return Table("Runs", ("run", "", *known), rows, note)
 
     def failures(self) -> Table:
         """Table of the runs that failed, and why."""

@@ -117,7 +117,8 @@ class Evaluator:
                 result = finished(case, place) or self._runner(case, place, self._progress)
             except QuietbladeError as error:
                 return Evaluation(dict(values), failure=f"{name}: {error}")
-            figures[name] = {**all_figures(result), **case_figures(case)}
+            known = {**all_figures(result), **case_figures(case)}
+            figures[name] = {key: value for key, value in known.items() if np.isfinite(value)}
         return Evaluation(dict(values), figures)
 
 

@@ -165,8 +165,8 @@ def run_study(
             computed += 1
             try:
                 result = runner(run.words, folder, progress)
-            except QuietbladeError as error:
-                message = str(error)
+            except (QuietbladeError, MemoryError) as error:
+                message = str(error) or "not enough memory"
                 announce(number, len(runs), run.name, f"failed: {message}")
         if result is not None:
             results[run.case, run.variant] = result
