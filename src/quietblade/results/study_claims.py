@@ -14,7 +14,7 @@ from quietblade.results.claims import Claim, judge_claims
 from quietblade.results.files import ResultError, write_text
 from quietblade.results.model import Result
 from quietblade.results.study_convergence import GridConvergence, grid_convergence
-from quietblade.results.tables import Table
+from quietblade.results.table import Table
 
 Verdict = Literal["agrees", "agrees within uncertainty", "differs", "not computed"]
 

@@ -13,7 +13,7 @@ import xarray as xr
 from quietblade.results.files import ResultError, replacing, write_text
 from quietblade.results.study_convergence import grid_convergence
 from quietblade.results.study_figures import Figure
-from quietblade.results.tables import Table, number
+from quietblade.results.table import Table, number
 
 FORMAT = "quietblade study"
 

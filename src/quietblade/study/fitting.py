@@ -12,7 +12,8 @@ from quietblade.results.files import ResultError, write_text
 from quietblade.results.model import Result
 from quietblade.results.store import RunFolder
 from quietblade.results.study_claims import closest_runs, closest_table
-from quietblade.results.tables import Table, as_text, number
+from quietblade.results.table import Table, number
+from quietblade.results.tables import as_text
 from quietblade.study.calibration import Fitted
 from quietblade.study.sensitivity import Sensitivities
 

@@ -13,7 +13,7 @@ from quietblade.case.study import flat
 from quietblade.case.study_calibration import Calibration
 from quietblade.errors import QuietbladeError
 from quietblade.results.study_table import as_csv
-from quietblade.results.tables import Table, number
+from quietblade.results.table import Table, number
 from quietblade.study.calibration import Evaluation, Evaluator, Runner
 from quietblade.study.run import run_case
 from quietblade.typing import Progress, silent

@@ -23,7 +23,8 @@ from quietblade.results.study_table import (
     run_name,
     write_study,
 )
-from quietblade.results.tables import Table, as_text
+from quietblade.results.table import Table
+from quietblade.results.tables import as_text
 from quietblade.study.run import finished, run_case
 from quietblade.typing import Progress, silent
 
