@@ -9,10 +9,11 @@ STAMP  := .venv/installed.stamp
 LOCK   := requirements-dev.lock
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test verify bench docs lint lock clean clean-all
+.PHONY: help demo paper test verify bench docs lint lock clean clean-all
 
 help:
 	@echo "make demo     the paper's two blades, from case file to sound power"
+	@echo "make paper    the paper's study claim by claim, at its size (resumable; an hour or more)"
 	@echo "make test     the tests, on $(JOBS) processes (JOBS=1 for one)"
 	@echo "make verify   the reference checks, written to build/verification.json"
 	@echo "make bench    the benchmarks, written to build/benchmarks.json"
@@ -41,6 +42,9 @@ demo: $(STAMP)
 	@$(BIN)/quietblade report runs/paper-aluminium
 	@$(BIN)/quietblade report runs/paper-composite
 	@echo "pictures: runs/paper-aluminium/figures, runs/paper-composite/figures, runs/figures"
+
+paper: $(STAMP)
+	$(BIN)/quietblade study cases/paper.toml
 
 # Many small problems: one thread each, so that processes do not fight for the cores.
 test: export OMP_NUM_THREADS = 1

@@ -3,7 +3,8 @@
 
     python -m verification.run [--quick] [--only PREFIX] [--out FILE]
 
-The exit code is 1 if a check failed, raised an error, or if none was selected. Checks that were
+The exit code is 1 if a check failed without an explanation, raised an error, or if none was
+selected. Checks that were
 not selected keep the line of their last run in the file, so that a part can be run again alone.
 """
 
@@ -65,9 +66,9 @@ def run(check: Check) -> Row:
 
 def line(row: Row) -> str:
     """One line of the printed table."""
-    verdict = "passed" if row.passed else "FAILED"
+    verdict = "passed" if row.passed else "differs" if row.explanation else "FAILED"
     return (
-        f"{verdict}  {row.id:<52} {row.value:>14.7g} {row.reference:>14.7g} "
+        f"{verdict:<7} {row.id:<52} {row.value:>14.7g} {row.reference:>14.7g} "
         f"{row.tolerance:>9.2g} {row.seconds:>8.2f} s"
     )
 
@@ -108,8 +109,12 @@ def main() -> int:
     options.out.parent.mkdir(parents=True, exist_ok=True)
     entries = merge(options.out, rows, checks)
     options.out.write_text(json.dumps(entries, indent=1) + "\n", encoding="utf-8")
-    failed = [row.id for row in rows if not row.passed]
-    print(f"{len(rows)} checks, {len(failed)} failed; written to {options.out}")
+    failed = [row.id for row in rows if not row.passed and not row.explanation]
+    known = sum(bool(row.explanation) for row in rows)
+    print(
+        f"{len(rows)} checks, {len(failed)} failed, {known} known to differ; "
+        f"written to {options.out}"
+    )
     if not rows:
         print(f"no check matches --only {options.only!r}; known: {', '.join(checks) or 'none'}")
     return 1 if failed or not rows else 0

@@ -309,6 +309,7 @@ def make_configuration(
         ),
         dissipation=_dissipation(frequency, injected - radiated, radiated),
         sweep=m.SweepRecord("reduced", 0.01, 2e-4, 16, 64, 1),
+        stepped=_stepped(frequency, radiated),
         peaks=peaks,
         bands=m.BandTable(
             "decidecade",
@@ -488,6 +489,14 @@ def _peaks(frequency: FloatArray, power: FloatArray) -> m.PeakTable:
         10.0 * np.log10(power[top] / m.REFERENCE_POWER),
         4e-3 * frequency[top],
         np.full(len(top), 1e-5),
+    )
+
+
+def _stepped(frequency: FloatArray, power: FloatArray) -> m.SteppedTable:
+    true = _peaks(frequency, power).power_level
+    loss = np.array([2.0, 6.0, 12.0])
+    return m.SteppedTable(
+        np.array([0.5, 1.0, 2.0]), true[:, None] - 0.3 * loss, true[:, None] - loss
     )
 
 

@@ -45,6 +45,7 @@ def solved(
             operators=model.operators,
             sources=model.sources,
             normal_motion=normal_motion_matrix(model.fem, "wet"),
+            excited=SimpleNamespace(root=None),
         ),
     )
     rows = np.array([model.forced_by_motion(degree, w) for w in OMEGA])

@@ -260,9 +260,10 @@ def test_finished_run_is_found_and_another_case_is_not(
 
 
 def test_stages_read_only_what_they_declare(result: Result, watch: Watch) -> None:
-    # what they stand for is declared: materials by their constants, the cells of the water
+    # what they stand for is declared: materials by their constants, the cells of the water, the
+    # places of pressures
     names = {"blade.material", "film.material", "materials"}
-    stand_ins = {"mesh": {"acoustics.band", "water.sound_speed"}}
+    stand_ins = {"mesh": {"acoustics.band", "water.sound_speed", "excitation"}}
     for name, stage in stages(tuple(result.configurations), stream=False, campbell=False).items():
         reads = watch.seen.get(name, set()) - names - stand_ins.get(name, set())
         undeclared = sorted(key for key in reads if not depends(name, key))

@@ -17,8 +17,8 @@ from quietblade.cli.common import ExitCode, error_console, show_error
 from quietblade.errors import QuietbladeError
 
 COMMANDS = (
-    "new", "check", "run", "show", "plot", "report", "compare", "section", "export", "materials",
-    "doctor",
+    "new", "check", "run", "show", "plot", "report", "compare", "study", "section", "export",
+    "materials", "doctor",
 )  # fmt: skip
 """Each is the function of the same name in the module of the same name."""
 

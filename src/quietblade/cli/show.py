@@ -11,12 +11,16 @@ from quietblade.cli.tables import show_tables
 
 
 def show(
-    directory: Annotated[Path, typer.Argument(help="Folder of a run.")],
+    directory: Annotated[Path, typer.Argument(help="Folder of a run or of a study.")],
     as_json: Annotated[
         bool, typer.Option("--json", help="Print JSON (docs: result-schema) and nothing else.")
     ] = False,
 ) -> ExitCode:
-    """Show the headline figures of a run."""
+    """Show the headline figures of a run, or the tables of a study."""
+    if (directory / "study.nc").is_file():
+        from quietblade.cli.study import show_study  # noqa: PLC0415
+
+        return show_study(directory, as_json=as_json)
     from quietblade.results.headline import summarise  # noqa: PLC0415  # help must stay fast
     from quietblade.results.store import RunFolder  # noqa: PLC0415
     from quietblade.results.tables import summary_tables  # noqa: PLC0415

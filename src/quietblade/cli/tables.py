@@ -42,8 +42,10 @@ def _rich(table: Table) -> RichTable:
     )
     heads = table.columns or ("",) * len(table.rows[0])
     for head, texts in zip(heads, zip(*table.rows, strict=True), strict=True):
-        short = max(map(len, texts)) <= _SHORT
-        shown.add_column(Text(head, style="cyan"), no_wrap=short, overflow="fold")
+        width = max(map(len, texts))
+        # the head of a column of short texts may wrap, they may not
+        least = width if width <= _SHORT else None
+        shown.add_column(Text(head, style="cyan"), min_width=least, overflow="fold")
     for row in table.rows:
         shown.add_row(*(Text(text, style=_STYLES.get(text, "")) for text in row))
     return shown

@@ -305,8 +305,8 @@ def _shift(exponent: float, temperature: float) -> float:
     """10 to an exponent, refused where a temperature is beyond what a law of shift can mean."""
     _require(
         abs(exponent) < _FARTHEST,
-        f"at {temperature:g} K the law of shift gives a factor of 1e{exponent:+.0f}: the "
-        "temperature is outside its range",
+        f"{temperature:g} K shifts all frequencies by a factor of 1e{exponent:+.0f}: that is "
+        "outside its range",
     )
     return float(10.0**exponent)
 

@@ -36,6 +36,8 @@ class Claim:
         Figure that the judgement rests on, in the unit of ``computed``.
     agrees : bool or None
         None if it was not computed.
+    low, high : float
+        Values between these agree; nan where the judgement is not that of one figure.
     """
 
     id: str
@@ -45,6 +47,15 @@ class Claim:
     criterion: str
     value: float | None
     agrees: bool | None
+    low: float = np.nan
+    high: float = np.nan
+
+    @property
+    def miss(self) -> float | None:
+        """Distance of the value from the range that agrees; None where there is no such range."""
+        if self.value is None or np.isnan(self.low):
+            return None
+        return max(self.low - self.value, self.value - self.high, 0.0)
 
 
 @dataclass(frozen=True)
@@ -125,10 +136,14 @@ def _claim(
     unit: str = "",
 ) -> Claim:
     criterion = said.criterion(unit)
+    bounds = said.low, said.high
     if not np.isfinite(value):
-        return Claim(f"paper/{key}", statement, said.text, "not computed", criterion, None, None)
+        text = "not computed"
+        return Claim(f"paper/{key}", statement, said.text, text, criterion, None, None, *bounds)
     agrees = bool(said.low < value < said.high)
-    return Claim(f"paper/{key}", statement, said.text, computed, criterion, float(value), agrees)
+    return Claim(
+        f"paper/{key}", statement, said.text, computed, criterion, float(value), agrees, *bounds
+    )
 
 
 # --- step 1 -----------------------------------------------------------------------------------
@@ -294,8 +309,10 @@ def _peak(key: str, mode: _PaperMode, peak: Peak | None, *, computed: bool) -> C
     said = _Said(f"about {mode.frequency:g} Hz", 0.87 * mode.frequency, 1.13 * mode.frequency)
     statement = f"{mode.name}: peak at rest"
     if computed and peak is None:  # the sweep was made and the peak is not there
-        text = "no such peak"
-        return Claim(f"paper/{key}", statement, said.text, text, said.criterion("Hz"), None, False)
+        text, criterion = "no such peak", said.criterion("Hz")
+        return Claim(
+            f"paper/{key}", statement, said.text, text, criterion, None, False, said.low, said.high
+        )
     frequency = peak.frequency if peak else np.nan
     return _claim(key, statement, said, frequency, f"{frequency:.1f} Hz", "Hz")
 

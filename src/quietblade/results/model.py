@@ -321,6 +321,21 @@ class PeakTable(Record):
 
 
 @dataclass(frozen=True, eq=False)
+class SteppedTable(Record):
+    """The peaks as sweeps in even steps would show them; empty of a direct sweep."""
+
+    group: ClassVar[str] = "C*/stepped"
+    step: FloatArray
+    power_level: FloatArray
+    worst_level: FloatArray
+
+    @classmethod
+    def none(cls) -> "SteppedTable":
+        """Return the table of a sweep whose true peaks are not known."""
+        return cls(np.zeros(0), np.zeros((0, 0)), np.zeros((0, 0)))
+
+
+@dataclass(frozen=True, eq=False)
 class BandTable(Record):
     """Mean power by band and over all."""
 
@@ -415,6 +430,7 @@ class ConfigurationResult(Record):
     dissipation: Dissipation
     sweep: SweepRecord
     peaks: PeakTable
+    stepped: SteppedTable
     bands: BandTable
     far_field: FarFieldResult
     directivity: DirectivityResult

@@ -53,6 +53,7 @@ DIMENSIONS: Mapping[str, str] = MappingProxyType(
         "order": "multiples of the blade rate",
         "crossing": "speeds of the shaft at which a multiple of the blade rate meets a mode",
         "peak": "maxima of the radiated power in ascending frequency",
+        "grid": "sweeps in even steps, from fine to coarse",
         "band": "bands that the frequencies cover",
         "multipole": "outgoing waves of degree 0, 1, 2 and all above",
         "point": "places in the water, in the order of the case",
@@ -317,6 +318,15 @@ _GROUPS: dict[str, tuple[Quantity, ...]] = {
            "10 log10(W / 1 pW)", reference="1 pW"),
         _q("width", "Delta f", "Hz", "peak", "half-power width, NaN if the flanks do not fall"),
         _q("estimate", "", "dB", "peak", "estimated error of the level, NaN in a direct sweep"),
+    ),
+    "C*/stepped": (
+        _q("step", "", "Hz", "grid", "step of a sweep"),
+        _q("power_level", "L_W", "dB", "peak grid",
+           "level that such a sweep from the lower end of the band shows of the peak",
+           "10 log10(W / 1 pW)", reference="1 pW"),
+        _q("worst_level", "L_W", "dB", "peak grid",
+           "level that it shows if its frequencies lie most unluckily",
+           "10 log10(W / 1 pW)", reference="1 pW"),
     ),
     "C*/bands": (
         _text("kind", "", "decidecade, or third-octave in base two"),

@@ -346,6 +346,8 @@ class ClaimSummary(_Part):
     criterion: str = Field(description="when the two agree")
     value: Number = Field(description="figure that the judgement rests on")
     agrees: bool | None = Field(description="null if it was not computed")
+    low: Number = Field(description="values above agree; null without a least value")
+    high: Number = Field(description="values below agree; null without a greatest value")
 
 
 class RunSummary(_Part):

@@ -67,6 +67,20 @@ class Drive:
 
 
 @dataclass(frozen=True, eq=False)
+class Powers:
+    """Radiated powers of all loads together, and of each: a value, so that it can be stored."""
+
+    excited: "Excited"
+
+    def __call__(self, model: ReducedModel, omega: FloatArray) -> FloatArray:
+        """Powers (f, k + 1) at angular frequencies [rad/s], (f, 1) of a single load."""
+        each = model.radiated(omega)
+        if len(self.excited.drives) == 1:
+            return each
+        return np.column_stack([each, self.excited.combined(model, omega).radiated])
+
+
+@dataclass(frozen=True, eq=False)
 class Excited:
     """All loads of a case on one configuration.
 
@@ -132,12 +146,10 @@ class Excited:
             self.parts(omega / (2.0 * np.pi)),
         )
 
-    def powers(self, model: ReducedModel, omega: FloatArray) -> FloatArray:
-        """Radiated powers (f, k + 1) that a reduced model must have right: of all, and of each."""
-        each = model.radiated(omega)
-        if len(self.drives) == 1:
-            return each
-        return np.column_stack([each, self.combined(model, omega).radiated])
+    @property
+    def powers(self) -> "Powers":
+        """What a reduced model must have right."""
+        return Powers(self)
 
     def modal_work(
         self,

@@ -264,6 +264,7 @@ def configuration_result(
         dissipation=dissipation(vibration, sound),
         sweep=_sweep(case, sound),
         peaks=_peaks(sound),
+        stepped=_stepped(sound),
         bands=far_outcome.band_table(case, sound),
         far_field=far_outcome.far_field_result(operators.radius, sound.far),
         directivity=far_outcome.directivity_result(case, sound.far),
@@ -313,6 +314,14 @@ def _sweep(case: Case, sound: Sound) -> model.SweepRecord:
 def _peaks(sound: Sound) -> model.PeakTable:
     peaks = sound.peaks
     return model.PeakTable(peaks.frequency, level(peaks.power), peaks.width, peaks.estimate)
+
+
+def _stepped(sound: Sound) -> model.SteppedTable:
+    if sound.stepped is None:
+        return model.SteppedTable.none()
+    return model.SteppedTable(
+        sound.stepped.step, level(sound.stepped.aligned), level(sound.stepped.worst)
+    )
 
 
 def mesh_result(mesh: Mesh, vibration: Vibration) -> model.MeshResult:

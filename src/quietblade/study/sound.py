@@ -20,6 +20,7 @@ from quietblade.vibroacoustics.peaks import Peaks, find_peaks, peaks_on_grid
 from quietblade.vibroacoustics.power import PowerBudget
 from quietblade.vibroacoustics.radiation_check import radiation_notices
 from quietblade.vibroacoustics.reduced import Certificate
+from quietblade.vibroacoustics.stepped import SteppedPeaks, stepped_peaks
 from quietblade.vibroacoustics.sweep import solve_response
 
 
@@ -62,6 +63,8 @@ class Sound:
         What leaves, and where to.
     certificate : Certificate or None
         Of a reduced sweep.
+    stepped : SteppedPeaks or None
+        The peaks of a reduced sweep as sweeps in even steps would show them.
     notices : tuple of Notice
     """
 
@@ -81,6 +84,7 @@ class Sound:
     far: FarField
     failures: Mapping[float, str] = field(default_factory=dict)
     certificate: Certificate | None = None
+    stepped: SteppedPeaks | None = None
     notices: tuple[Notice, ...] = ()
 
 
@@ -169,6 +173,11 @@ def _reduced(case: Case, vibration: Vibration, frequency: FloatArray, progress: 
         Samples(asked, tuple(at_asked), sources, columns),
         len(peaks.frequency),
     )
+    stepped = stepped_peaks(
+        lambda f: excited.combined(model, 2.0 * np.pi * f).radiated,
+        peaks.frequency,
+        case.acoustics.band,
+    )
     _, _, held = model.space.places
     snapshots = _snapshots(_nearest(frequency, vibration.damped.frequency), combined)
     return Sound(
@@ -187,6 +196,7 @@ def _reduced(case: Case, vibration: Vibration, frequency: FloatArray, progress: 
         peaks=peaks,
         far=far,
         certificate=sweep.certificate,
+        stepped=stepped,
         notices=(
             *_wave_notices(operators, waves),
             *far.notices,

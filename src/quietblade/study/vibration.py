@@ -160,14 +160,12 @@ def solve_vibration(
 ) -> Vibration:
     """Set up the linear problem about C0 (no motion) or C1, and find its modes."""
     name = "C0" if motion is None else "C1"
-    structure, flow = (
-        statics.structure,
-        statics.state.rigid if motion is None else statics.state.coupled,
-    )
+    structure = statics.structure
     state = structure.rest() if motion is None else statics.state.structure
     field = None if motion is None else displacement_field(mesh, motion)
     positions = mesh.nodes if motion is None else mesh.nodes + motion.displacement
-    frames = SectionFrames.of(blade, mesh, None if motion is None else flow.sections)
+    bent = None if motion is None else statics.state.coupled.sections
+    frames = SectionFrames.of(blade, mesh, bent)
     tangent, operators = linear_problem(case, mesh, structure, state, field)
     root = None
     if needs_root(case):
@@ -175,6 +173,7 @@ def solve_vibration(
         operators = root.operators
     slow: tuple[Notice, ...] = ()
     if case.acoustics.flow_damping:
+        flow = statics.state.rigid if motion is None else statics.state.coupled
         operators, slow = with_stream(case, mesh, operators, flow, positions, frames)
         root = None if root is None else replace(root, operators=operators)
     with ngs.TaskManager():
