@@ -11,7 +11,7 @@ None and says why in ``notes``.
 import argparse
 import json
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from importlib import import_module
 from pathlib import Path
 from pkgutil import iter_modules
@@ -52,6 +52,25 @@ def line(row: Mapping[str, Any]) -> str:
     return f"{row['id']:<42} " + " ".join(f"{text:>10}" for text in columns) + f"  {row['notes']}"
 
 
+def record(measured: Iterable[Mapping[str, Any]], file: Path = RECORD, *, keep: bool = True) -> int:
+    """Print rows as they are measured, write them to the file and return how many there were.
+
+    Rows of other ids stay in the file if ``keep``.
+    """
+    old = json.loads(file.read_text(encoding="utf-8")) if keep and file.exists() else []
+    entries, count = {row["id"]: row for row in old}, 0
+    print(f"{'benchmark':<42} {'ours [s]':>10} {'other [s]':>10} {'ratio':>10} {'peak [MB]':>10}")
+    for row in measured:
+        entries[row["id"]] = complete(row)
+        count += 1
+        print(line(row), flush=True)
+        # at once: a later row may take an hour, or not come
+        file.parent.mkdir(parents=True, exist_ok=True)
+        text = json.dumps([entries[key] for key in sorted(entries)], indent=1)
+        file.write_text(text + "\n", encoding="utf-8")
+    return count
+
+
 def main() -> int:
     """Run what the command line selects."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.run", description=__doc__)
@@ -59,18 +78,8 @@ def main() -> int:
     parser.add_argument("--out", type=Path, default=RECORD, help=f"default {RECORD.name} in build")
     options = parser.parse_args()
 
-    print(f"{'benchmark':<42} {'ours [s]':>10} {'other [s]':>10} {'ratio':>10} {'peak [MB]':>10}")
-    old = json.loads(options.out.read_text(encoding="utf-8")) if options.out.exists() else []
-    entries = {row["id"]: row for row in old} if options.only else {}
-    measured = 0
-    for name in modules(options.only):
-        for row in rows(name):
-            entries[row["id"]] = row
-            measured += 1
-            print(line(row), flush=True)
-    options.out.parent.mkdir(parents=True, exist_ok=True)
-    text = json.dumps([entries[key] for key in sorted(entries)], indent=1)
-    options.out.write_text(text + "\n", encoding="utf-8")
+    every = (row for name in modules(options.only) for row in rows(name))
+    measured = record(every, options.out, keep=bool(options.only))
     print(f"{measured} benchmarks; written to {options.out}")
     return 0 if measured else 1
 

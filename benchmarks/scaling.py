@@ -6,7 +6,9 @@
 Time of analysis and factorisation, of one more solution, and memory, with the exponents of a
 straight line through their logarithms.  The blade is at rest, so that no steady solution has to be
 found first; the sphere has a radius of 3 m.  Each size is a process of its own with two threads; it
-is stopped, and none larger is tried, if its memory would pass the limit.
+is stopped, and none larger is tried, if its memory would pass the limit.  To the limit of 20 GB:
+
+    python -m benchmarks.scaling --sizes 34 20 14 10.5 8.5 7 6 5.2
 """
 
 import argparse
@@ -22,6 +24,7 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks.run import RECORD, record
 from quietblade.linalg import make_solver
 from quietblade.vibroacoustics.reduced import ASIDE
 from verification.acoustics_blade import resting_blade
@@ -141,13 +144,13 @@ def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.scaling", description=__doc__)
     parser.add_argument("--sizes", type=float, nargs="+", default=[*SIZES], help="mesh sizes [mm]")
     parser.add_argument("--precision", choices=("double", "mixed"), default="double")
+    parser.add_argument("--out", type=Path, default=RECORD, help="where the rows are put")
     parser.add_argument("--one", type=float, metavar="SIZE", help="measure one size and leave")
     options = parser.parse_args()
     if options.one is not None:
         print(json.dumps(measure(options.one, options.precision)))
         return
-    for measured in rows(options.sizes, options.precision):
-        print(json.dumps(measured, indent=1), flush=True)
+    record(rows(options.sizes, options.precision), options.out)
 
 
 if __name__ == "__main__":

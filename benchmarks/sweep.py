@@ -26,6 +26,7 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks.run import RECORD, record
 from quietblade.linalg import SolverChain, make_solver
 from quietblade.materials.viscoelastic import FractionalZener
 from quietblade.typing import FloatArray
@@ -65,6 +66,10 @@ error is estimated with the whole A(omega)."""
 
 SYSTEMS = {"bgt1": 20, "dtn": 4, "zener": 4}
 """Held-out frequencies of each system."""
+
+
+IDS = {("bgt1", "double"): "acoustics/sweep-reduced-vs-direct"}
+"""Names of rows that are not made of system and precision."""
 
 
 def make_systems(folder: Path, size: str) -> None:
@@ -201,7 +206,7 @@ def row(name: str, precision: str, ours: Mapping[str, Any], other: Mapping[str, 
         else f"nowhere above {ROUNDING:g} dB"
     )
     return {
-        "id": f"acoustics/sweep-{name}-{precision}",
+        "id": IDS.get((name, precision), f"acoustics/sweep-{name}-{precision}"),
         "size": f"{ours['unknowns']} unknowns, {len(FREQUENCIES)} frequencies",
         "ours_s": ours["seconds"],
         "other": f"direct sweep in double, {len(error)} frequencies solved and extrapolated",
@@ -240,11 +245,11 @@ def main() -> None:
     """Run everything, or one measurement for another process."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.sweep", description=__doc__)
     parser.add_argument("--size", default=SIZE, help="mesh size on the blade")
+    parser.add_argument("--out", type=Path, default=RECORD, help="where the rows are put")
     parser.add_argument("--task", nargs=3, metavar=("TASK", "FILE", "WORDS"), help="internal")
     options = parser.parse_args()
     if options.task is None:
-        for measured in rows(options.size):
-            print(json.dumps(measured, indent=1), flush=True)
+        record(rows(options.size), options.out)
         return
     task, file, words = options.task[0], Path(options.task[1]), json.loads(options.task[2])
     if task == "systems":

@@ -11,7 +11,7 @@ import numpy as np
 from quietblade.case import Case
 from quietblade.case.presets import preset_text
 from quietblade.geometry import Blade
-from quietblade.mesh import Mesh, build_mesh
+from quietblade.mesh import Mesh, build_mesh, resize_sphere
 from quietblade.mesh.motion import solve_mesh_motion
 from quietblade.propulsion.structure import Structure
 from quietblade.propulsion.tangent import Tangent, compute_tangent
@@ -39,37 +39,45 @@ class WetBlade:
         Of the solid.
     displacement : (nodes, 3) array or None
         Of the blade's nodes from C0 to C1 [m]; None at rest.
+    moved : (nodes, 3) array or None
+        Of all nodes; None finds that of the water's by `solve_mesh_motion`.
     """
 
     case: Case
     mesh: Mesh
     tangent: Tangent
     displacement: FloatArray | None
+    moved: FloatArray | None = None
+
+    @cached_property
+    def carried(self) -> FloatArray | None:
+        """Displacement of all nodes from C0 to C1 (nodes, 3) [m], the water's too, if any moves."""
+        if self.displacement is None:
+            return None
+        if self.moved is not None:
+            return self.moved
+        return solve_mesh_motion(self.mesh, self.displacement, self.case.acoustics.gap).displacement
 
     @cached_property
     def motion(self) -> ngs.GridFunction | None:
-        """Displacement of the whole mesh from C0 to C1 [m], if there is one."""
-        if self.displacement is None:
+        """The same as a field of the whole mesh."""
+        if self.carried is None:
             return None
-        motion = solve_mesh_motion(self.mesh, self.displacement, self.case.acoustics.gap)
         field = ngs.GridFunction(ngs.VectorH1(self.mesh.fem, order=2))
-        field.vec.FV().NumPy()[:] = self.mesh.basis.to_dofs(motion.displacement)
+        field.vec.FV().NumPy()[:] = self.mesh.basis.to_dofs(self.carried)
         return field
 
-    def in_sphere(self, radius: float, fixed: float = 0.6) -> "WetBlade":
-        """Return the same blade, cell by cell, in another sphere [m].
+    def in_sphere(self, radius: float, fixed: float) -> "WetBlade":
+        """Return the same blade, cell by cell, in another sphere [m] (`resize_sphere`).
 
-        The water's nodes within ``fixed`` [m] of the centre stay, blade included; those outside
-        move along their rays, in proportion.
+        What stays within ``fixed`` [m] of the centre is the same on C0 and on C1.
         """
-        away = self.mesh.nodes - self.mesh.centre
-        distance = np.linalg.norm(away, axis=1)
-        beyond = np.maximum(distance - fixed, 0.0)
-        stretch = (radius - fixed) / (self.mesh.radius - fixed)
-        moved = np.minimum(distance, fixed) + stretch * beyond
-        ratio = np.where(beyond > 0.0, moved / np.maximum(distance, fixed), 1.0)
-        nodes = self.mesh.centre + ratio[:, None] * away
-        return replace(self, mesh=replace(self.mesh, nodes=nodes, radius=radius))
+        mesh = resize_sphere(self.mesh, radius, fixed)
+        if self.carried is None:
+            return replace(self, mesh=mesh)
+        deformed = replace(self.mesh, nodes=self.mesh.nodes + self.carried)
+        moved = resize_sphere(deformed, radius, fixed).nodes - mesh.nodes
+        return replace(self, mesh=mesh, moved=moved)
 
     def system(self, condition: RadiationCondition | None = None, loss: Loss = None) -> Operators:
         """A(omega) with a condition on the sphere, first-order BGT if left out, and a loss.

@@ -97,6 +97,15 @@ class Wave:
         net = abs(self.outgoing) ** 2 - abs(self.incoming) ** 2
         return 2.0 * np.pi * density * omega * net / (self.k * (2 * self.degree + 1))
 
+    def power_through(self, radius: float, condition: Bgt, density: float, omega: float) -> float:
+        """Power through the sphere that has a condition d psi/dr + b psi = 0 [W].
+
+        W = 2 pi R^2 rho omega Im(b) |psi|^2/(2l + 1): that of `power`, which at low frequency is
+        the difference of two numbers that are the same to rounding.
+        """
+        passing = condition(self.degree, self.k, radius).imag * abs(self.potential(radius)) ** 2
+        return 2.0 * np.pi * radius**2 * density * omega * passing / (2 * self.degree + 1)
+
     def power_of_sources(self, density: float, omega: float) -> float:
         """Power of the part that is singular inside, with amplitude A - B [W].
 

@@ -76,7 +76,6 @@ def layered_mesh(
     wetted: float,
     *,
     hollow: bool = True,
-    cap: float | None = None,
 ) -> ngs.Mesh:
     """Concentric spheres, solid "blade" inside the wetted radius and "water" outside, curved.
 
@@ -88,8 +87,6 @@ def layered_mesh(
         The radius, one of them, where the water begins: boundary "wet".
     hollow : bool
         Whether there is a vacuum in the innermost sphere (boundary "inside").
-    cap : float or None
-        Half-angle of a polar cap [rad] of the wetted surface, which becomes "excited".
     """
     centre = occ.Pnt(0.0, 0.0, 0.0)
     names = {radii[-1]: "outer", wetted: "wet"} | ({radii[0]: "inside"} if hollow else {})
@@ -102,19 +99,8 @@ def layered_mesh(
     for index in range(1, len(balls)):
         layer = balls[index] - balls[index - 1]
         parts.append(layer.mat("blade" if radii[index] <= wetted else "water"))
-    if cap is not None:
-        parts.append(_cap(balls[radii.index(wetted)], wetted, cap))
     shape = occ.OCCGeometry(occ.Glue(parts))
     return ngs.Mesh(shape.GenerateMesh(maxh=0.4, grading=0.9, optsteps3d=1)).Curve(2)
-
-
-def _cap(ball: occ.Solid, radius: float, angle: float) -> occ.Face:
-    """Part of the sphere's surface within an angle of the z axis, named "excited"."""
-    low = radius * float(np.cos(angle))
-    box = occ.Box(occ.Pnt(-radius, -radius, low), occ.Pnt(radius, radius, 2.0 * radius))
-    cap = max((box * ball).faces, key=lambda face: face.center.z)
-    cap.name = "excited"
-    return cap
 
 
 @dataclass(frozen=True)

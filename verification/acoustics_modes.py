@@ -49,11 +49,16 @@ def real_mode(sphere: ElasticSphere, degree: int, low: float, high: float) -> fl
     return float(brentq(lambda f: stiffness(sphere, degree, f).real, low, high, xtol=1e-9))
 
 
-def complex_mode(sphere: ElasticSphere, degree: int, low: float, high: float) -> complex:
-    """Complex frequency [Hz], from the analytic continuation of the stiffness off the real line."""
+def complex_mode(
+    sphere: ElasticSphere, degree: int, low: float, high: float, decay: float = 50.0
+) -> complex:
+    """Complex frequency [Hz], from the analytic continuation of the stiffness off the real line.
+
+    Its real part is looked for between ``low`` and ``high``, its imaginary part below ``decay``.
+    """
     along = np.vectorize(lambda f: stiffness(sphere, degree, f), otypes=[complex])
     roots = Chebyshev.interpolate(along, 16, domain=[low, high]).roots()
-    (found,) = roots[(roots.real > low) & (roots.real < high) & (np.abs(roots.imag) < 50.0)]
+    (found,) = roots[(roots.real > low) & (roots.real < high) & (np.abs(roots.imag) < decay)]
     return complex(found)
 
 

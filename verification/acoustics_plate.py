@@ -18,6 +18,7 @@ from quietblade.vibroacoustics.fluid import Water
 from quietblade.vibroacoustics.loss import Lossy
 from quietblade.vibroacoustics.operators import Operators, build_operators
 from quietblade.vibroacoustics.point_loads import surface_of
+from quietblade.vibroacoustics.radiation import Bgt1, RadiationCondition
 from quietblade.vibroacoustics.root import RootedSystem, add_root
 from quietblade.vibroacoustics.sweep import solve_point
 from verification.acoustics_body import plate_mesh
@@ -26,7 +27,7 @@ from verification.acoustics_models import WATER, Elastic, linear_elastic
 
 @dataclass(frozen=True, eq=False)
 class WetPlate:
-    """A plate along z, clamped at its lower end, in a sphere of water under first-order BGT.
+    """A plate along z, clamped at its lower end, in a sphere of water.
 
     Attributes
     ----------
@@ -40,6 +41,8 @@ class WetPlate:
     radius : float
         Of the sphere [m].
     water : Water
+    condition : RadiationCondition
+        On the sphere.
     """
 
     sides: tuple[float, float, float] = (0.2, 0.03, 0.5)
@@ -48,6 +51,7 @@ class WetPlate:
     size: float = 0.12
     radius: float = 0.5
     water: Water = WATER
+    condition: RadiationCondition = field(default_factory=Bgt1)
 
     @cached_property
     def fem(self) -> ngs.Mesh:
@@ -85,7 +89,7 @@ class WetPlate:
         stiffness, mass = self.matrices
         return build_operators(
             self.fem, stiffness=stiffness, mass=mass, loss=self.loss, water=self.water,
-            radius=self.radius,
+            radius=self.radius, condition=self.condition,
         )  # fmt: skip
 
     @cached_property

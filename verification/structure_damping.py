@@ -209,14 +209,14 @@ for _loss, _tag, _quick in ((0.1, "light", True), (1.0, "heavy", False)):
             zip(*reduced_form(_values), strict=True), start=1
         ):
 
-            @check(f"structure/sandwich-{_name}frequency-{_tag}-{_mode}",
+            @check(f"acoustics/sandwich-{_name}frequency-{_tag}-{_mode}",
                    quantity=f"frequency {_mode} of the sandwich, core loss {_loss:g} [Hz]",
                    reference=float(_frequency), source=_source, quick=_quick,
                    tolerance=(1e-3 if _mode <= 3 else 5e-3) * float(_frequency))  # fmt: skip
             def _frequencies(mode: int = _mode, loss: float = _loss, solid=_solid) -> float:  # type: ignore[no-untyped-def]
                 return float(solid(loss)[0][mode - 1])
 
-            @check(f"structure/sandwich-{_name}loss-{_tag}-{_mode}",
+            @check(f"acoustics/sandwich-{_name}loss-{_tag}-{_mode}",
                    quantity=f"loss factor {_mode} of the sandwich, core loss {_loss:g}",
                    reference=float(_factor), source=_source, tolerance=1e-2 * float(_factor),
                    quick=_quick)  # fmt: skip

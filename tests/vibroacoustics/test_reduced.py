@@ -8,6 +8,7 @@ import pytest
 
 from quietblade.errors import ConvergenceError
 from quietblade.linalg import make_solver
+from quietblade.materials.viscoelastic import FractionalZener
 from quietblade.typing import FloatArray
 from quietblade.vibroacoustics.complex_modes import complex_modes
 from quietblade.vibroacoustics.krylov import krylov_vectors, taylor_coefficients
@@ -18,6 +19,7 @@ from quietblade.vibroacoustics.power import level, power_budget
 from quietblade.vibroacoustics.projection import Projection
 from quietblade.vibroacoustics.reduced import ReducedSweep, reduce_system
 from tests.vibroacoustics.small_systems import random_operators
+from verification.acoustics_damping import wide_band_error
 
 BAND = (3.0, 9.0)
 GRID = np.linspace(*BAND, 61)
@@ -203,3 +205,35 @@ def test_one_factor_serves_the_modes_of_a_wide_band() -> None:
     both = found.converged & plain.converged
     assert np.mean(both) > 0.9
     np.testing.assert_allclose(found.omega[both], plain.omega[both], rtol=1e-7)
+
+
+def test_band_without_a_resonance_in_any_order() -> None:
+    operators = random_operators()
+    solver = make_solver(precision="double", tolerance=1e-12)
+    frequency = np.array([1.2, 1.0, 1.0, 1.1])
+    sweep = reduce_system(operators, a_load(operators), frequency, solver=solver)
+    assert len(sweep.model.light_modes((1.0, 1.2))[0]) == 0
+    assert len(find_peaks(sweep, (1.0, 1.2)).frequency) == 0
+    assert sweep.model.radiated(np.zeros(0)).shape == (0,)
+    found = level(sweep.model.radiated(2.0 * np.pi * frequency))
+    np.testing.assert_allclose(found, direct(operators, frequency), atol=0.01)
+
+
+@pytest.mark.parametrize("factor", [0.0, np.nan])
+def test_load_without_a_meaning_is_refused(factor: float) -> None:
+    operators = random_operators()
+    with pytest.raises(ValueError, match="zero or not finite"):
+        reduce_system(operators, factor * a_load(operators), GRID)
+
+
+@pytest.mark.parametrize("band", [(50.0, 3000.0), (0.0, 400.0), (330.0, 350.0)])
+def test_modes_of_any_band_have_the_moduli_of_their_own_frequency(
+    band: tuple[float, float],
+) -> None:
+    assert wide_band_error(FractionalZener(1.4, 1e-3, 0.6), band) < 1e-9
+
+
+@pytest.mark.parametrize("band", [(200.0, 100.0), (-1.0, 100.0), (0.0, 0.0)])
+def test_what_is_not_a_band_is_refused(band: tuple[float, float]) -> None:
+    with pytest.raises(ValueError, match="not a band"):
+        wide_band_error(FractionalZener(1.4, 1e-3, 0.6), band)

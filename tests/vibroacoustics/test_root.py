@@ -10,9 +10,11 @@ import pytest
 from quietblade.linalg import make_solver
 from quietblade.propulsion.tangent import compute_tangent
 from quietblade.typing import ComplexArray, FloatArray
+from quietblade.vibroacoustics.dtn import Dtn
 from quietblade.vibroacoustics.modes import dry_modes, wet_modes
+from quietblade.vibroacoustics.multipoles import SurfaceSources
 from quietblade.vibroacoustics.point_loads import point_force
-from quietblade.vibroacoustics.power import dissipated_by_region, power_budget
+from quietblade.vibroacoustics.power import dissipated_by_region, power_budget, radiated_power
 from quietblade.vibroacoustics.reduced import reduce_system
 from quietblade.vibroacoustics.root import RootedSystem, add_root, elastic_shaft
 from quietblade.vibroacoustics.transfer_functions import (
@@ -272,3 +274,21 @@ def test_what_add_root_refuses() -> None:
     with pytest.raises(ValueError, match="lossy regions"):
         add_root(model.operators, model.fem, model.basis, stiffness=stiffness, mass=mass)
     assert isinstance(model.fem, ngs.Mesh)
+
+
+@pytest.mark.parametrize("axis", [1, 2])
+def test_far_field_of_a_moving_root_is_what_passes_the_sphere(axis: int) -> None:
+    model = WetPlate(condition=Dtn(6))
+    system, omega = model.rooted, OMEGA[1:2]
+    response = solve_all(
+        system.operators, FREQUENCY[1:2], system.base_motion(np.eye(6)[axis])[None]
+    )
+    through = radiated_power(system.operators, omega, response[:, 0])
+
+    def difference(sources: SurfaceSources) -> float:
+        return float(np.abs(sources.multipoles(omega, response[:, 0]).power / through - 1.0)[0])
+
+    moving = SurfaceSources.of(model.fem, model.basis, system.operators, carried=system.carried)
+    still = SurfaceSources.of(model.fem, model.basis, system.operators)
+    assert difference(moving) < 0.02
+    assert difference(still) > 5.0 * difference(moving)

@@ -17,6 +17,7 @@ from scipy.optimize import nnls
 from quietblade.errors import MaterialError
 from quietblade.typing import AnyArray, ComplexArray, FloatArray
 
+_FARTHEST = 30.0  # decades of frequency by which a temperature can shift a material
 GAS_CONSTANT = 8.31446261815324  # J/(mol K), exact by the definition of the SI
 
 
@@ -155,7 +156,7 @@ class WlfShift:
             self.c2 + above > 0.0,
             f"the WLF shift ends at {self.reference - self.c2:g} K; {temperature:g} K is beyond",
         )
-        return float(10.0 ** (-self.c1 * above / (self.c2 + above)))
+        return _shift(-self.c1 * above / (self.c2 + above), temperature)
 
 
 @dataclass(frozen=True)
@@ -175,10 +176,10 @@ class ArrheniusShift:
 
     def factor(self, temperature: float) -> float:
         """Return a_T."""
-        _require(temperature > 0.0, f"temperature {temperature:g} K must be positive")
-        return float(
-            np.exp(self.energy / GAS_CONSTANT * (1.0 / temperature - 1.0 / self.reference))
-        )
+        for kelvin in (temperature, self.reference):
+            _require(kelvin > 0.0, f"temperature {kelvin:g} K must be positive")
+        turned = 1.0 / temperature - 1.0 / self.reference
+        return _shift(self.energy / GAS_CONSTANT * turned / np.log(10.0), temperature)
 
 
 @dataclass(frozen=True)
@@ -195,6 +196,9 @@ class Shifted:
 
     model: ModulusRatio
     factor: float
+
+    def __post_init__(self) -> None:
+        _require(0.0 < self.factor < np.inf, f"shift factor {self.factor:g} must be positive")
 
     def __call__(self, omega: complex) -> complex:
         """Return g(omega)."""
@@ -295,6 +299,16 @@ def _positive_fit(columns: AnyArray, wanted: AnyArray, size: ComplexArray) -> Fl
         np.concatenate([rows.real, rows.imag]), np.concatenate([target.real, target.imag])
     )
     return np.asarray(strengths, dtype=np.float64)
+
+
+def _shift(exponent: float, temperature: float) -> float:
+    """10 to an exponent, refused where a temperature is beyond what a law of shift can mean."""
+    _require(
+        abs(exponent) < _FARTHEST,
+        f"at {temperature:g} K the law of shift gives a factor of 1e{exponent:+.0f}: the "
+        "temperature is outside its range",
+    )
+    return float(10.0**exponent)
 
 
 def _require(holds: bool, message: str) -> None:

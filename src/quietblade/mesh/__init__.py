@@ -5,6 +5,7 @@ from quietblade.mesh.build import MeshSpec, build_mesh
 from quietblade.mesh.cad import Patch
 from quietblade.mesh.model import BOUNDARIES, INTERFACE, REGIONS, CellBlock, Mesh, Quality
 from quietblade.mesh.nodal import NodalBasis
+from quietblade.mesh.resize import resize_sphere
 
 __all__ = [
     "BOUNDARIES",
@@ -17,4 +18,5 @@ __all__ = [
     "Patch",
     "Quality",
     "build_mesh",
+    "resize_sphere",
 ]

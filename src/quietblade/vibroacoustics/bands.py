@@ -111,7 +111,14 @@ def band_mean(frequency: FloatArray, power: FloatArray, band: tuple[float, float
     -------
     float
         nan if the frequencies do not reach from edge to edge.
+
+    Raises
+    ------
+    ValueError
+        If the upper edge is not above the lower one.
     """
+    if not band[0] < band[1]:
+        raise ValueError(f"bands: {band[0]:g} to {band[1]:g} Hz is not a band")
     order = np.argsort(frequency)
     f, p = np.asarray(frequency, dtype=float)[order], np.asarray(power, dtype=float)[order]
     low, high = band

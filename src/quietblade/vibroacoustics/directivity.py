@@ -49,8 +49,21 @@ def directivity(waves: Multipoles, directions: FloatArray, distance: float = np.
         Need not be of unit length.
     distance : float
         From the centre of the waves [m].
+
+    Raises
+    ------
+    ValueError
+        If a direction has no length, or the distance does not lie outside the body.
     """
-    unit = directions / np.linalg.norm(directions, axis=1)[:, None]
+    length = np.linalg.norm(directions, axis=1)
+    if not np.all(length > 0.0):
+        raise ValueError("directivity: a direction without length; give vectors that are not zero")
+    if not distance >= waves.reach * (1.0 - 1e-9):
+        raise ValueError(
+            f"directivity: {distance:.4g} m from the centre is inside the ball of "
+            f"{waves.reach:.4g} m that holds the body; take a larger distance"
+        )
+    unit = directions / length[:, None]
     water, starts = waves.water, np.arange(waves.degree + 1) ** 2
     strength = np.add.reduceat(np.abs(waves.amplitudes) ** 2, starts, axis=1)
     if np.isinf(distance):
@@ -111,8 +124,10 @@ def plane_directions(
     Raises
     ------
     ValueError
-        If start and normal are parallel.
+        If the normal has no length, or start and normal are parallel.
     """
+    if not np.linalg.norm(normal) > 0.0:
+        raise ValueError("directivity: the plane's normal must not be zero")
     axis = np.asarray(normal, dtype=float) / np.linalg.norm(normal)
     first = np.eye(3)[np.argmin(np.abs(axis))] if start is None else np.asarray(start, dtype=float)
     first = first - (first @ axis) * axis

@@ -71,8 +71,14 @@ def dtn_degree(ka: float, size_ratio: float, accuracy: float = 1e-3) -> int:
     Raises
     ------
     ValueError
-        If the body reaches the sphere, or more than `MOST_DEGREES` degrees would be needed.
+        If a number has no meaning, the body reaches the sphere, or more than `MOST_DEGREES`
+        degrees would be needed.
     """
+    if not (0.0 < accuracy < 1.0 and 0.0 <= ka < np.inf):
+        raise ValueError(
+            f"radiation condition: the accuracy, {accuracy:g}, must lie between 0 and 1, and "
+            f"ka = {ka:g} must be a number that is not negative"
+        )
     if not 0.0 < size_ratio < 1.0:
         raise ValueError(
             f"radiation condition: the body reaches {size_ratio:.3g} of the sphere's radius; "
@@ -115,6 +121,12 @@ class Dtn:
     size_ratio: float = 1.0
     accuracy: float = 1e-3
     name: str = "DtN"
+
+    def __post_init__(self) -> None:
+        if self.degree < 0 or self.degree != int(self.degree):
+            raise ValueError(
+                f"radiation condition: the degree, {self.degree}, must be 0, 1, 2, ..."
+            )
 
     def matrices(self, fem: ngs.Mesh, water: Water, outer: str) -> Mapping[str, csr_matrix]:
         """Q = int rho psi dpsi over the sphere."""

@@ -35,6 +35,11 @@ class Water:
     density: float
     sound_speed: float
 
+    def __post_init__(self) -> None:
+        for name, value in (("density", self.density), ("sound speed", self.sound_speed)):
+            if not 0.0 < value < np.inf:
+                raise ValueError(f"water: its {name}, {value:g}, must be a positive number (SI)")
+
 
 def potential_space(fem: ngs.Mesh) -> ngs.H1:
     """Space Q of the velocity potential, order 2, numbered as ``NodalBasis`` does.

@@ -163,6 +163,8 @@ def wet_modes(
 
     Raises
     ------
+    ValueError
+        If the highest frequency is not positive.
     ConvergenceError
         If a mode that was counted was not found.
     SolverError
@@ -222,6 +224,8 @@ def solve_modes(
     end of the spectrum of the shifted and inverted pencil, where Lanczos' method converges first
     (T. Ericsson and A. Ruhe, Math. Comp. 35 (1980) 1251-1268).
     """
+    if not 0.0 < highest < np.inf:
+        raise ValueError(f"modes: the highest frequency, {highest:g} Hz, must be positive")
     chosen = make_solver(precision="double", tolerance=_TOLERANCE) if solver is None else solver
     shift = (2.0 * np.pi * highest) ** 2
     progress("modes", None, f"factorisation at {highest:g} Hz")

@@ -182,6 +182,7 @@ class SurfaceSources:
         motion: ngs.GridFunction | None = None,
         surface: str = CLOSED_SURFACE,
         center: FloatArray | None = None,
+        carried: csr_matrix | None = None,
     ) -> Self:
         """Integrate the sources over the closed surface.
 
@@ -197,6 +198,9 @@ class SurfaceSources:
         center : (3,) array or None
             None takes the middle of the surface's bounding box; the power does not depend on it,
             the number of degrees does.
+        carried : (V.ndof, n) csr_matrix or None
+            Displacement unknowns of a root that moves, from all unknowns: `RootedSystem.carried`
+            and `ShaftSystem.carried`.  Without it the root's face is at rest.
         """
         water = Water(operators.density, operators.sound_speed)
         nodes = basis.nodes_of(surface, codimension=1)
@@ -209,7 +213,8 @@ class SurfaceSources:
         space = product_space(fem)
         to_free = _selection(operators.free, space.ndof, operators.size)
         to_nodes = basis.interpolation[:, nodes].T
-        flux = to_nodes @ coupling.T @ to_free[: coupling.shape[0]]
+        moving = to_free[: coupling.shape[0]]
+        flux = to_nodes @ coupling.T @ (moving if carried is None else moving + carried)
         potential = to_free[space.Range(2).start :]
         rows = np.split(np.arange(coupling.shape[0]), 3)
         x, y, z = (csr_matrix(to_nodes @ coupling[row] @ potential) for row in rows)

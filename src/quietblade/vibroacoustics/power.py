@@ -130,7 +130,7 @@ def radiated_power(operators: System, omega: FloatArray, response: ComplexArray)
         operators.condition.factors(complex(w), operators.sound_speed, operators.radius)
         for w in frequencies.flat
     ]
-    for name in factors[0]:
+    for name in factors[0] if factors else ():
         passing = np.reshape([-complex(f[name]).imag for f in factors], frequencies.shape)
         power += passing * _real_form(operators.terms[name], response, response)
     return 0.5 * frequencies * power

@@ -148,11 +148,14 @@ class Projection:
         finite = np.isfinite(values)
         return omega * (1.0 + values[finite]), (scale[:, None] * vectors[: len(zero), finite]).T
 
-    def refined(self, omega: complex, coordinates: ComplexArray) -> tuple[complex, ComplexArray]:
+    def refined(
+        self, omega: complex, coordinates: ComplexArray, settled: float = _SETTLED
+    ) -> tuple[complex, ComplexArray]:
         """Eigenpair of V^T A(omega) V itself, by Newton's method from one close by.
 
         That of `eigenpairs` is one of the interpolated factors.  If the iteration does not stay
-        close, the start is returned.  The columns are the first ones, as many as coordinates.
+        close, the start is returned.  It ends where omega changes by no more than ``settled`` of
+        itself.  The columns are the first ones, as many as coordinates.
         """
         value, vector, kept = omega, coordinates, slice(len(coordinates))
         for _ in range(_NEWTON_STEPS):
@@ -170,7 +173,7 @@ class Projection:
             vector = scale * (y + step[:-1])
             if abs(value / omega - 1.0) > _SPREAD:
                 break
-            if abs(step[-1]) <= _SETTLED:
+            if abs(step[-1]) <= settled:
                 return complex(value), vector
         return omega, coordinates
 

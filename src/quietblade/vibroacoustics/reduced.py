@@ -9,7 +9,7 @@ space grows until the sound power at every frequency asked for has settled (theo
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import islice, zip_longest
+from itertools import islice, pairwise, zip_longest
 
 import numpy as np
 
@@ -30,6 +30,10 @@ _DECIBEL = 10.0 / np.log(10.0)
 _JUDGED = 3  # successive models whose powers must agree
 _LEAST = 4  # vectors before the first judgement
 _LIGHT = 0.2  # loss factor up to which a mode can make a needle
+_OFF = 0.95  # of the range in which modes with interpolated factors are looked for
+_SETTLED = 1e-9  # relative change of such a mode's frequency at which it is good enough
+_LOWEST = 1e-3  # of a band's upper end: below it no mode is looked for
+_EDGE = 1e-12  # by which the upper end of a band is widened, to be inside
 _AT_ONCE = 64  # frequencies whose matrices are in memory together
 _STAGE = "reduced model"
 
@@ -93,6 +97,8 @@ class ReducedModel:
         """Solutions in the columns, (f, size) or (f, k, size), at angular frequencies [rad/s]."""
         load = self.reduced_load.reshape(-1, self.size).T.astype(complex)
         at = np.atleast_1d(omega)
+        if len(at) == 0:
+            return np.zeros((0, *self.load.shape[:-1], self.size), dtype=np.complex128)
         rows = [
             np.linalg.solve(self.space.at_each(part, self.size), load).swapaxes(1, 2)
             for part in np.array_split(at, max(1, -(-len(at) // _AT_ONCE)))
@@ -140,14 +146,37 @@ class ReducedModel:
     def light_modes(self, band: tuple[float, float]) -> tuple[FloatArray, FloatArray]:
         """Frequencies Re Omega / 2 pi [Hz] in a band and loss factors of the model's own modes.
 
-        Those that decay too fast to make a peak are left out; ascending.
+        Those that decay too fast to make a peak are left out; ascending.  Complex moduli and the
+        sphere's factors are those at each mode's own Omega, however wide the band is.
+
+        Raises
+        ------
+        ValueError
+            If the band has no positive frequency, or its ends are not in order.
         """
-        low, high = (2.0 * np.pi * f for f in band)
-        values, _ = self.space.eigenpairs(0.5 * (low + high), self.size)
-        loss = 2.0 * values.imag / values.real
-        chosen = (values.real >= low) & (values.real <= high) & (np.abs(loss) < _LIGHT)
-        order = np.argsort(values[chosen].real)
-        return values[chosen].real[order] / (2.0 * np.pi), loss[chosen][order]
+        if not 0.0 <= band[0] <= band[1] or not 0.0 < band[1] < np.inf:
+            raise ValueError(f"reduced model: {band[0]:g} to {band[1]:g} Hz is not a band")
+        low, high = (2.0 * np.pi * max(f, _LOWEST * band[1]) for f in band)
+        parts = max(1, int(np.ceil(np.log2(high / low))))
+        limits = np.geomspace(low, high, parts + 1)
+        limits[-1] *= 1.0 + _EDGE
+        found = np.concatenate([self._light(*part) for part in pairwise(limits.tolist())])
+        order = np.argsort(found.real)
+        return found.real[order] / (2.0 * np.pi), (2.0 * found.imag / found.real)[order]
+
+    def _light(self, low: float, high: float) -> ComplexArray:
+        """Omega of the light modes from low to high [rad/s], an octave at most."""
+        values, coordinates = self.space.eigenpairs(0.5 * (low + high), self.size)
+        # their factors are interpolated from the middle: a mode may be a little off
+        near = (values.real > _OFF * low) & (values.real < high / _OFF)
+        near &= np.abs(values.imag) < _LIGHT * values.real
+        refined = [
+            self.space.refined(complex(value), vector, _SETTLED)[0]
+            for value, vector in zip(values[near], coordinates[near], strict=True)
+        ]
+        omega = np.array(refined, dtype=np.complex128)
+        light = np.abs(2.0 * omega.imag) < _LIGHT * omega.real
+        return omega[light & (omega.real >= low) & (omega.real < high)]
 
 
 @dataclass(frozen=True, eq=False)
@@ -274,6 +303,8 @@ def reduce_system(
 
     Raises
     ------
+    ValueError
+        If the frequencies are not positive, or a load is zero.
     ConvergenceError
         The estimate stays above the tolerance; says where.
     """
@@ -281,6 +312,9 @@ def reduce_system(
     at = np.asarray(frequency, dtype=float)
     if at.ndim != 1 or at.size == 0 or not np.all(at > 0.0):
         raise ValueError("the frequencies of a sweep have to be a list of positive numbers [Hz]")
+    sizes = np.linalg.norm(np.atleast_2d(load), axis=1)
+    if not np.all((sizes > 0.0) & np.isfinite(sizes)):
+        raise ValueError("a load of a sweep is zero or not finite: it makes no sound to be swept")
     space = Projection(operators)
     models: list[ReducedModel] = []
     powers: list[FloatArray] = []  # theirs, at the frequencies asked for

@@ -87,6 +87,11 @@ class RootedSystem:
         """Read the translation [m] and rotation [rad] of the root, (..., 6)."""
         return np.asarray(response[..., self.operators.blocks.held] @ _TURN[:, :6])
 
+    @property
+    def carried(self) -> csr_matrix:
+        """Displacement unknowns of the root (V.ndof, n) from all unknowns."""
+        return _carried(self.rigid @ _TURN[:6], self.operators)
+
 
 def add_root(
     operators: Operators,
@@ -201,6 +206,11 @@ class ShaftSystem:
         """Read the translation [m] and rotation [rad] of the root, (..., 6)."""
         return np.asarray(response[..., self.operators.blocks.root])
 
+    @property
+    def carried(self) -> csr_matrix:
+        """Displacement unknowns of the root (V.ndof, n) from all unknowns."""
+        return _carried(self.rigid, self.operators)
+
 
 def elastic_shaft(
     system: RootedSystem, stiffness: AnyArray, damping: AnyArray, mass: AnyArray
@@ -234,6 +244,13 @@ def elastic_shaft(
     K, C, M = (_placed(n, part) for part in (stiffness, damping, mass))
     operators = bordered(free, free.blocks, {"K": K, "M": M}, {SHAFT: (C, Viscous())})
     return ShaftSystem(operators, system.rigid, system.about)
+
+
+def _carried(motion: FloatArray, operators: Operators) -> csr_matrix:
+    """Put displacement unknowns of the held ones into the columns of all."""
+    entries, held = coo_array(motion), operators.blocks.held
+    shape = (len(motion), operators.size)
+    return csr_matrix((entries.data, (entries.row, held[entries.col])), shape=shape)
 
 
 def _placed(n: int, part: AnyArray) -> csr_matrix:
