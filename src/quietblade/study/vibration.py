@@ -16,7 +16,7 @@ from quietblade.mesh.model import INTERFACE
 from quietblade.mesh.motion import MeshMotion
 from quietblade.mesh.surface import SurfaceQuadrature
 from quietblade.propulsion.structure import Structure, StructureState
-from quietblade.propulsion.tangent import Tangent, compute_tangent
+from quietblade.propulsion.tangent import STIFFNESS, Tangent, compute_tangent
 from quietblade.study import losses, translate
 from quietblade.study.frames import SectionFrames
 from quietblade.study.statics import Statics
@@ -38,6 +38,25 @@ static load moves into the band keeps its name."""
 
 FAST_SPIN = 0.05
 """Ratio 2 omega_p / omega_1 beyond which the neglected Coriolis force is noticed."""
+
+
+@dataclass(frozen=True)
+class Share:
+    """What of the steady load counts in the linear problem about C1 (theory: S2-1).
+
+    Attributes
+    ----------
+    shape : bool
+        Whether the blade, and the water around it, have the deformed shape.
+    prestress : bool
+        Whether the stress of the load acts, with the loads in balance with it.
+    pieces : tuple of str or None
+        Pieces of the tangent that are added up; by default those that the case asks for.
+    """
+
+    shape: bool = True
+    prestress: bool = True
+    pieces: tuple[str, ...] | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,14 +123,20 @@ def linear_problem(
     structure: Structure,
     state: StructureState,
     field: ngs.GridFunction | None,
+    share: Share | None = None,
 ) -> tuple[Tangent, Operators]:
-    """Assemble eq. (7) about a state of the structure, on the mesh that is moved to it."""
-    tangent = compute_tangent(structure, state)
+    """Assemble eq. (7) about a state of the structure, on the mesh that is moved to it.
+
+    With a `Share`, only that part of the state counts.
+    """
+    part = share or Share()
+    tangent = compute_tangent(structure, state, shape=part.shape, prestress=part.prestress)
+    form = STIFFNESS[case.acoustics.tangent] if part.pieces is None else part.pieces
     on_springs = case.root.support == "elastic"  # then the root face moves in the water too
     with ngs.TaskManager():
         operators = build_operators(
             mesh.fem,
-            stiffness=tangent.stiffness(case.acoustics.tangent),
+            stiffness=tangent.sum(form),
             loss=losses.loss_parts(case, losses.moduli(case), structure, state, tangent),
             mass=tangent.mass,
             water=translate.water(case),
@@ -131,18 +156,26 @@ def solve_vibration(
     statics: Statics,
     motion: MeshMotion | None,
     progress: Progress,
+    share: Share | None = None,
 ) -> Vibration:
-    """Set up the linear problem about C0 (no motion) or C1, and find its modes."""
+    """Set up the linear problem about C0 (no motion) or C1, and find its modes.
+
+    With a `Share`, only that part of the steady load counts; without the deformed shape the
+    problem is on the mesh of C0.
+    """
     name = "C0" if motion is None else "C1"
+    loaded = motion is not None
+    if share is not None and not share.shape:
+        motion = None
     structure, flow = (
         statics.structure,
         statics.state.rigid if motion is None else statics.state.coupled,
     )
-    state = structure.rest() if motion is None else statics.state.structure
+    state = statics.state.structure if loaded else structure.rest()
     field = None if motion is None else displacement_field(mesh, motion)
     positions = mesh.nodes if motion is None else mesh.nodes + motion.displacement
     frames = SectionFrames.of(blade, mesh, None if motion is None else flow.sections)
-    tangent, operators = linear_problem(case, mesh, structure, state, field)
+    tangent, operators = linear_problem(case, mesh, structure, state, field, share)
     slow: tuple[Notice, ...] = ()
     if case.acoustics.flow_damping:
         operators, slow = with_stream(case, mesh, operators, flow, positions, frames)
