@@ -9,10 +9,11 @@ STAMP  := .venv/installed.stamp
 LOCK   := requirements-dev.lock
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test verify bench docs lint lock clean clean-all
+.PHONY: help demo paper-page test verify bench docs lint lock clean clean-all
 
 help:
 	@echo "make demo     the paper's two blades, from case file to sound power"
+	@echo "make paper-page  the page of the paper, from the runs of its study"
 	@echo "make test     the tests, on $(JOBS) processes (JOBS=1 for one)"
 	@echo "make verify   the reference checks, written to build/verification.json"
 	@echo "make bench    the benchmarks, written to build/benchmarks.json"
@@ -41,6 +42,12 @@ demo: $(STAMP)
 	@$(BIN)/quietblade report runs/paper-aluminium
 	@$(BIN)/quietblade report runs/paper-composite
 	@echo "pictures: runs/paper-aluminium/figures, runs/paper-composite/figures, runs/figures"
+
+# What goes beyond the paper, on a middle mesh, and the page; the study itself: make paper.
+paper-page: $(STAMP)
+	$(BIN)/python -m tools.paper_beyond
+	$(BIN)/quietblade study cases/paper-beyond.toml --out runs/paper/beyond
+	$(BIN)/python -m tools.paper_page
 
 # Many small problems: one thread each, so that processes do not fight for the cores.
 test: export OMP_NUM_THREADS = 1

@@ -32,9 +32,7 @@ def main() -> None:
         compute(case, options.out / blade, report)
 
 
-def compute(
-    case: Case, folder: Path, progress: Callable[[str, float | None, str], None]
-) -> None:
+def compute(case: Case, folder: Path, progress: Callable[[str, float | None, str], None]) -> None:
     """Compute the tables of one blade that are not there yet."""
     loaded: LoadedBlade | None = None
     for name, make in TABLES.items():

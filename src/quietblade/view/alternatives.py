@@ -9,8 +9,17 @@ from matplotlib.figure import Figure
 
 from quietblade.results.alternatives import AlternativeTable
 from quietblade.typing import FloatArray
-from quietblade.view.style import BLACK, BLUE, GREEN, GREY, PURPLE, SKY, VERMILION
-from quietblade.view.style import new_figure, styled
+from quietblade.view.style import (
+    BLACK,
+    BLUE,
+    GREEN,
+    GREY,
+    PURPLE,
+    SKY,
+    VERMILION,
+    new_figure,
+    styled,
+)
 
 STEPS: Mapping[str, tuple[str, str]] = {
     "shape": ("deformed shape", BLUE),

@@ -3,6 +3,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 import pyvista as pv
@@ -69,8 +70,8 @@ def draw_configurations(folder: RunFolder) -> Figure:
     _name(axes, tips[0], "$C_0$: at rest", "#5A656E", (0.04, -0.02))
     _name(axes, tips[1], "$C_1$: steady load", BLUE, (0.02, 0.04))
     _name(axes, tips[2], "$C_2$: vibrating\n(enlarged)", VERMILION, (0.05, -0.02))
-    _arrow(axes, tips[0], tips[1], "$u_1$")
-    _arrow(axes, tips[1], tips[2], "$u_2$")
+    _arrow(axes, tips[0], tips[1], "$u_1$", "right")
+    _arrow(axes, tips[1], tips[2], "$u_2$", "left")
     _draw_axis(axes, project, float(rest.points[:, 2].min()))
     axes.set_aspect("equal")
     axes.margins(0.02)
@@ -121,11 +122,15 @@ def _name(axes: Axes, at: FloatArray, text: str, color: str, offset: tuple[float
     axes.text(*(at + offset), text, color=color, fontsize=9.0, va="center", fontweight="bold")
 
 
-def _arrow(axes: Axes, start: FloatArray, end: FloatArray, text: str) -> None:
+def _arrow(
+    axes: Axes, start: FloatArray, end: FloatArray, text: str, side: Literal["left", "right"]
+) -> None:
+    """Arrow with its name beside it; ``side`` is that of the text which faces the arrow."""
     axes.add_patch(
         FancyArrowPatch(start, end, arrowstyle="-|>", mutation_scale=9.0, color=BLACK, zorder=5)
     )
-    axes.text(*(0.5 * (start + end) + (-0.02, 0.0)), text, ha="right", va="center", zorder=6)
+    beside = 0.5 * (start + end) + (0.025 if side == "left" else -0.02, 0.01)
+    axes.text(*beside, text, ha=side, va="center", zorder=6)
 
 
 def _draw_axis(axes: Axes, project: _Projection, root: float) -> None:
@@ -170,7 +175,7 @@ def draw_algorithm(results: Mapping[str, Result]) -> Figure:
     methods = ", ".join(dict.fromkeys(r.static.coupling_method for r in results.values()))
     tolerance = first.static.tolerance
     _title(axes, 0.1, "Step 1: propulsion, steady and nonlinear", BLUE)
-    _title(axes, 4.45, "Step 2: vibration, linear", VERMILION)
+    _title(axes, 4.4, "Step 2: vibration, linear", VERMILION)
     start = _box(axes, (0.55, 2.14), (0.9, 0.3), "$u_1^0 = 0$", BLUE)
     flow = _box(
         axes, (2.3, 1.95), (1.75, 0.68),
@@ -190,7 +195,7 @@ def draw_algorithm(results: Mapping[str, Result]) -> Figure:
     )  # fmt: skip
     sound = _box(
         axes, (5.35, 0.95), (1.7, 0.62),
-        f"wet modes and sound power\n{unknowns:_} unknowns".replace("_", " "), VERMILION,
+        f"wet modes, sound power\n{unknowns:_} unknowns".replace("_", " "), VERMILION,
     )  # fmt: skip
     left = flow["left"][0]
     _link(axes, start, "right", {"left": (left, start["right"][1])}, "left")
@@ -204,7 +209,7 @@ def draw_algorithm(results: Mapping[str, Result]) -> Figure:
         )
     )  # fmt: skip
     axes.text(test["top"][0] + 0.05, 1.45, "no: $k+1$", fontsize=8.0, ha="left")
-    low = test["bottom"][1] - 0.18
+    low = test["bottom"][1] - 0.24
     axes.plot(
         [test["bottom"][0], test["bottom"][0], 3.75, 3.75],
         [test["bottom"][1], low, low, about["left"][1]],
