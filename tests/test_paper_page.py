@@ -52,12 +52,12 @@ def pictures_of(page: Path) -> list[Path]:
     return [page.parent / name for name in re.findall(r"!\[.*?\]\((.*?)\)", page.read_text())]
 
 
-def test_page_has_every_figure_of_the_paper(out: Path) -> None:
+def test_page_has_every_figure_of_the_paper(study: Path, out: Path) -> None:
     drawn = pictures_of(out / "paper.md")
     assert all(file.is_file() for file in drawn)
     numbers = {"1", "2", "3", "4", "5a", "5b", "5c", "5d", "6", "7", "8"}
     assert numbers <= {file.stem.removeprefix("figure-") for file in drawn}
-    assert all(file.with_suffix(".pdf").is_file() for file in drawn)
+    assert all((study / "figures" / f"{file.stem}.pdf").is_file() for file in drawn)
     assert set(pictures_of(out / "gallery.md")) == set(drawn)
 
 

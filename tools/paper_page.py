@@ -10,6 +10,8 @@ the page, which says so.
 
 import argparse
 import json
+import re
+import shutil
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
@@ -51,13 +53,18 @@ def main() -> None:
 
 
 def write_page(runs: PaperRuns, out: Path) -> None:
-    """Write ``paper.md``, ``gallery.md``, ``gallery/*.png`` and ``paper.json`` into a folder."""
-    pictures = out / "gallery"
+    """Write ``paper.md``, ``gallery.md``, ``gallery/*.png`` and ``paper.json`` into a folder.
+
+    The pictures go to ``figures`` of the study too, as PDF and PNG.
+    """
+    pictures = runs.root / "figures"
     parts = [_HEAD, *_figures(runs, pictures)]
     for section in SECTIONS:
         parts.extend(section(runs, pictures))
     write_text(out / "paper.md", "\n".join(parts).rstrip() + "\n")
-    write_text(out / "gallery.md", "\n".join(_gallery(pictures)) + "\n")
+    used = re.findall(r"!\[.*?\]\(gallery/(.*?)\)", "\n".join(parts))
+    _copy([pictures / name for name in used], out / "gallery")
+    write_text(out / "gallery.md", "\n".join(_gallery(used)) + "\n")
     figures = {run: headline(runs.result(run)) for run in runs.names()}
     text = json.dumps(_rounded(figures), indent=1, sort_keys=True)
     write_text(out / "paper.json", text + "\n")
@@ -74,12 +81,21 @@ def _figures(runs: PaperRuns, pictures: Path) -> Iterator[str]:
         yield f"{CAPTIONS[number]}\n"
 
 
-def _gallery(pictures: Path) -> Iterator[str]:
+def _copy(files: list[Path], folder: Path) -> None:
+    """Put the pictures of the page into a folder, and no others."""
+    for old in folder.glob("*.png"):
+        old.unlink()
+    folder.mkdir(parents=True, exist_ok=True)
+    for file in files:
+        shutil.copyfile(file, folder / file.name)
+
+
+def _gallery(pictures: list[str]) -> Iterator[str]:
     yield "# Gallery\n"
     yield "<!-- Written by tools/paper_page.py. -->\n"
     yield "Pictures of [the paper's study](paper.md), drawn from its runs.\n"
-    for file in sorted(pictures.glob("*.png")):
-        yield f"![{file.stem}](gallery/{file.name})\n"
+    for name in pictures:
+        yield f"![{name.removesuffix('.png')}](gallery/{name})\n"
 
 
 def _rounded(value: object) -> object:
