@@ -116,29 +116,31 @@ class ModeFigures:
     Attributes
     ----------
     name : str
-    frequency, loss_factor, film_loss, radiation_loss : float
-        [Hz], and loss factors.
+    frequency, loss_factor : float
+        [Hz], and of the damped mode.
     peak, level, width : float
         Frequency of the peak [Hz], its level [dB re 1 pW] and half-power width [Hz].
     radiated : float
         Share of the injected power that is radiated at the peak.
+    degrees : tuple of float
+        Shares of monopole, dipole, quadrupole, ... in the radiated power.
     """
 
     name: str
     frequency: float
     loss_factor: float
-    film_loss: float
-    radiation_loss: float
     peak: float
     level: float
     width: float
     radiated: float
+    degrees: tuple[float, ...]
 
 
 def modes_in_band(configuration: ConfigurationResult) -> tuple[ModeFigures, ...]:
     """Modes that make a peak of the sound power, by frequency."""
     modes, spectrum = configuration.modes, configuration.spectrum
     share = spectrum.power[path("sphere")] / spectrum.injected
+    by_degree = spectrum.power_by_degree
     found = []
     for name, peak in find_peaks(configuration).items():
         k = modes.name.index(name)
@@ -148,12 +150,11 @@ def modes_in_band(configuration: ConfigurationResult) -> tuple[ModeFigures, ...]
                 name,
                 float(modes.frequency[k]),
                 float(modes.loss_factor[k]),
-                float(modes.film_loss[k]),
-                float(modes.radiation_loss[k]),
                 peak.frequency,
                 peak.level,
                 peak.width,
                 float(share[nearest]),
+                tuple((by_degree[:, nearest] / by_degree[:, nearest].sum()).tolist()),
             )
         )
     return tuple(found)

@@ -58,6 +58,11 @@ def number(value: float, form: str) -> str:
     return format(value, form) if np.isfinite(value) else "–"
 
 
+def percent(share: float) -> str:
+    """Format a share; the least that is told is 0.01 %."""
+    return "< 0.01 %" if share < 1e-4 else f"{100.0 * share:.3g} %"
+
+
 # --- claims ------------------------------------------------------------------------------------
 
 
@@ -248,20 +253,39 @@ def water(runs: PaperRuns, _: Path) -> Iterator[str]:
 def losses(runs: PaperRuns, _: Path) -> Iterator[str]:
     """Loss factor of each mode and where the power goes."""
     yield "## Loss of each mode, and where the power goes\n"
-    yield "The loss factor of a mode ([S2-16](theory-step2.md#S2-16)) has a part of the film and"
-    yield "one of the sound. At the peak the injected power goes into these two.\n"
+    yield "The loss factor of a damped mode ([S2-16](theory-step2.md#S2-16)), split in proportion"
+    yield "to the powers that film and sound take at the peak ([S2-55](theory-loss.md#S2-55)).\n"
     for blade in BLADES:
         result = runs.result(f"{blade}-{runs.main}")
         rows = [
             [blade, name, m.name, f"{m.peak:.2f}", f"{m.level:.1f}", f"{m.loss_factor:.1e}",
-             f"{m.film_loss:.1e}", f"{m.radiation_loss:.1e}", number(m.width, ".2g"),
-             f"{100 * m.radiated:.2g}"]
+             f"{m.loss_factor * (1.0 - m.radiated):.1e}", f"{m.loss_factor * m.radiated:.1e}",
+             number(m.width, ".2g"), percent(m.radiated)]
             for name, configuration in result.configurations.items()
             for m in modes_in_band(configuration)
         ]  # fmt: skip
         heads = ["Blade", "", "Mode", "Peak [Hz]", "[dB re 1 pW]", "Loss factor", "film", "sound",
-                 "Width [Hz]", "Radiated [%]"]  # fmt: skip
+                 "Width [Hz]", "Power that is radiated"]  # fmt: skip
         yield markdown(heads, rows)
+
+
+def directions(runs: PaperRuns, _: Path) -> Iterator[str]:
+    """Tell where the sound goes: degrees of the waves at the peaks."""
+    yield "## Where the sound goes\n"
+    yield "Shares of the outgoing waves in the radiated power at each peak"
+    yield "([S2-9](theory-step2.md#S2-9)). A dipole has the directivity of a figure of eight about"
+    yield "the direction in which the blade pushes the water; a monopole has none.\n"
+    kinds = ("Monopole", "Dipole", "Quadrupole", "Higher")
+    for blade in BLADES:
+        rows, least = [], 1.0
+        for name, configuration in runs.result(f"{blade}-{runs.main}").configurations.items():
+            for mode in modes_in_band(configuration):
+                shares = [*mode.degrees[:3], sum(mode.degrees[3:])]
+                least = min(least, shares[1])
+                rows.append([blade, name, mode.name, *map(percent, shares)])
+        yield markdown(["Blade", "", "Mode", *kinds], rows)
+        if least > 0.5:
+            yield f"Every peak of the {blade} blade is a dipole, to {percent(least)} at least.\n"
 
 
 # --- what the steps of the model cost ----------------------------------------------------------
@@ -421,5 +445,7 @@ def _mesh_of(table: AlternativeTable) -> str:
     return f"Cells of {1e3 * table.element_size:.3g} mm on the blade.\n"
 
 
-SECTIONS: tuple[Section, ...] = (claims, shift, water, losses, costs, films, provenance)
+SECTIONS: tuple[Section, ...] = (
+    claims, shift, water, losses, directions, costs, films, provenance,
+)  # fmt: skip
 """In the order of the page, behind the figures."""
