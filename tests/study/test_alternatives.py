@@ -31,6 +31,7 @@ COARSE = {
     "acoustics.band": ["15 Hz", "40 Hz"],
     "acoustics.step": "25 Hz",
     "acoustics.points_per_mode": 0,
+    "static.tolerance": 1e-3,
     "flow.sections": 21,
     "flow.section_nodes": 81,
 }
@@ -38,7 +39,7 @@ COARSE = {
 
 @pytest.fixture(scope="module")
 def loaded() -> LoadedBlade:
-    return load_blade(Case.parse(preset_text("paper-composite")).varied(COARSE))
+    return load_blade(Case.parse(preset_text("paper-aluminium")).varied(COARSE))
 
 
 @pytest.fixture(scope="module")
