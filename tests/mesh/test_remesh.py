@@ -36,7 +36,7 @@ def test_new_water_fills_the_space_around_the_deformed_blade(
         return float(ngs.Integrate(ngs.CF(1.0) * ngs.dx(regions, deformation=field), mesh.fem))
 
     ball = float(ngs.Integrate(ngs.CF(1.0), coarse_mesh.fem))  # of the same triangles
-    assert volume("water") + volume("blade|film") == pytest.approx(ball, rel=1e-9)
+    assert volume("water") + volume("blade|film") == pytest.approx(ball, rel=1e-7)
     water = mesh.cells["water"][0].connectivity
     assert tetrahedron_jacobians(mesh.nodes + motion.displacement, water).min() > 0.0
     assert motion.least_jacobian > 0.1

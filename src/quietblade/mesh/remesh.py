@@ -67,13 +67,15 @@ def remesh_water(
     least = _least_jacobian(placed, water)
     moved = np.zeros_like(placed)
     moved[: len(kept)] = u
+    nodes = placed.copy()
+    nodes[: len(kept)] = mesh.nodes[kept]
     cells = {
         name: tuple(CellBlock(block.kind, number[block.connectivity]) for block in blocks)
         for name, blocks in mesh.cells.items()
     }
     new = replace(
         mesh,
-        nodes=placed - moved,
+        nodes=nodes,
         cells={**cells, "water": (CellBlock("tetra10", water),)},
         faces=faces,
         quality={**mesh.quality, "water": replace(quality, least_jacobian=least)},

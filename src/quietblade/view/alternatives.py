@@ -56,6 +56,9 @@ def draw_shift(tables: Mapping[str, AlternativeTable]) -> Figure:
         _levels(lower, table, shown)
         lower.set_xticks(range(len(shown)), [table.mode[k] for k in shown])
         upper.set_title(name)
+        for axes in (upper, lower):
+            axes.use_sticky_edges = False  # bars keep clear of the frame too
+            axes.margins(y=0.1)
     panels[0, 0].set_ylabel("Natural frequency\nagainst C0 [%]")
     panels[1, 0].set_ylabel("Level of the peak\nagainst C0 [dB]")
     figure.legend(*panels[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
