@@ -73,7 +73,7 @@ def test_page_tells_the_numbers_of_the_tables(out: Path) -> None:
 
 
 def test_water_that_differs_is_said_to_differ(study: Path, tmp_path: Path) -> None:
-    from tools.paper_sections import water  # noqa: PLC0415
+    from tools.paper_steps import water  # noqa: PLC0415
 
     make_water(2e-3).save(tmp_path / "beyond" / "composite" / "water.nc")
     text = "\n".join(water(PaperRuns(tmp_path, "ours"), tmp_path))

@@ -19,10 +19,12 @@ from quietblade.results.claims import BLADES
 from quietblade.results.files import write_text
 from quietblade.view.paper import CAPTIONS, draw_paper_figures
 from tools.paper_runs import PaperRuns, headline
-from tools.paper_sections import SECTIONS
+from tools.paper_sections import claims, directions, losses, provenance
+from tools.paper_steps import costs, films, shift, water
 
 ROOT = Path(__file__).resolve().parent.parent
 _DIGITS = 5
+_SECTIONS = (claims, shift, water, losses, directions, costs, films, provenance)
 
 _HEAD = """# The paper, claim by claim
 
@@ -59,7 +61,7 @@ def write_page(runs: PaperRuns, out: Path) -> None:
     """
     pictures = runs.root / "figures"
     parts = [_HEAD, *_figures(runs, pictures)]
-    for section in SECTIONS:
+    for section in _SECTIONS:
         parts.extend(section(runs, pictures))
     write_text(out / "paper.md", "\n".join(parts).rstrip() + "\n")
     used = re.findall(r"!\[.*?\]\(gallery/(.*?)\)", "\n".join(parts))

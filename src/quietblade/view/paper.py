@@ -37,7 +37,8 @@ CAPTIONS: Mapping[str, str] = {
 DPI = 110
 """Of the pictures on a page: at the width of a column they are sharp, and small enough to keep."""
 
-_COLORS = 160  # of a picture: a third of the size, and no difference to the eye
+_HEAVY = 130_000  # bytes beyond which a picture gets few colours: a third of the size
+_COLORS = 160
 
 
 def draw_paper_figures(
@@ -70,15 +71,17 @@ def draw_paper_figures(
 
 
 def save(figure: Figure, out: Path, name: str, progress: Progress = silent) -> Path:
-    """Write a figure as PDF, and as PNG of few colours; returns the PNG."""
+    """Write a figure as PDF, and as PNG; returns the PNG."""
     pdf, png = (out / f"{name}.{suffix}" for suffix in ("pdf", "png"))
     with replacing(pdf) as temporary:
         figure.savefig(temporary)
     with BytesIO() as buffer:
         figure.savefig(buffer, format="png", dpi=DPI)
-        picture = Image.open(buffer).convert("RGB").quantize(_COLORS, dither=Image.Dither.NONE)
+        picture = Image.open(buffer).convert("RGB")
     with replacing(png) as temporary:
         picture.save(temporary, optimize=True)
+        if temporary.stat().st_size > _HEAVY:
+            picture.quantize(_COLORS, dither=Image.Dither.NONE).save(temporary, optimize=True)
     progress("figures", None, name)
     return png
 
