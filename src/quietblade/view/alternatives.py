@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from quietblade.results.alternatives import AlternativeTable
-from quietblade.typing import FloatArray
+from quietblade.typing import AnyArray, FloatArray
 from quietblade.view.style import (
     BLACK,
     BLUE,
@@ -85,7 +85,7 @@ def _waterfall(axes: Axes, table: AlternativeTable, shown: Sequence[int]) -> Non
     axes.axhline(0.0, color=GREY, linewidth=0.7)
 
 
-def _join(axes: Axes, place: FloatArray, level: FloatArray, width: float) -> None:
+def _join(axes: Axes, place: AnyArray, level: AnyArray, width: float) -> None:
     """Thin line from the end of a step to the beginning of the next."""
     axes.hlines(level, place - 0.5 * width, place + 1.5 * width, color=GREY, linewidth=0.6)
 
