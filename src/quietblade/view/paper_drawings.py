@@ -3,7 +3,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 import pyvista as pv
@@ -36,7 +36,7 @@ class _Projection:
         towards = np.array(self.view.place) / np.linalg.norm(self.view.place)
         right = np.cross(self.view.up, towards)
         right /= np.linalg.norm(right)
-        return points @ np.stack([right, np.cross(towards, right), towards]).T
+        return np.asarray(points @ np.stack([right, np.cross(towards, right), towards]).T)
 
 
 @styled
@@ -109,28 +109,38 @@ def _draw_solid(
 
 
 def _tip(grid: pv.UnstructuredGrid) -> FloatArray:
-    """Middle of the nodes of the tip: those last on the span of the blade at rest."""
-    return np.asarray(grid.points[_tip_nodes(grid)].mean(axis=0))
+    """Middle of the nodes that are farthest along the span of the blade at rest."""
+    heights = np.asarray(grid.points)[:, 2]
+    return np.asarray(grid.points[heights > heights.max() - 0.02 * np.ptp(heights)].mean(axis=0))
 
 
-def _tip_nodes(grid: pv.UnstructuredGrid) -> FloatArray:
-    heights = grid.points[:, 2]
-    return np.asarray(heights > heights.max() - 0.02 * np.ptp(heights))
+def _write(axes: Axes, at: FloatArray, offset: tuple[float, float], text: str, **look: Any) -> None:
+    x, y = (at + offset).tolist()
+    axes.text(x, y, text, **look)
+
+
+def _point(axes: Axes, ends: FloatArray, color: str = BLACK) -> None:
+    """Arrow from the first point to the second, (2, 2)."""
+    (x0, y0), (x1, y1) = ends.tolist()
+    axes.add_patch(
+        FancyArrowPatch(
+            (x0, y0), (x1, y1), arrowstyle="-|>", mutation_scale=9.0, color=color,
+            linewidth=1.2, zorder=5,
+        )
+    )  # fmt: skip
 
 
 def _name(axes: Axes, at: FloatArray, text: str, color: str, offset: tuple[float, float]) -> None:
-    axes.text(*(at + offset), text, color=color, fontsize=9.0, va="center", fontweight="bold")
+    _write(axes, at, offset, text, color=color, fontsize=9.0, va="center", fontweight="bold")
 
 
 def _arrow(
     axes: Axes, start: FloatArray, end: FloatArray, text: str, side: Literal["left", "right"]
 ) -> None:
     """Arrow with its name beside it; ``side`` is that of the text which faces the arrow."""
-    axes.add_patch(
-        FancyArrowPatch(start, end, arrowstyle="-|>", mutation_scale=9.0, color=BLACK, zorder=5)
-    )
-    beside = 0.5 * (start + end) + (0.025 if side == "left" else -0.02, 0.01)
-    axes.text(*beside, text, ha=side, va="center", zorder=6)
+    _point(axes, np.array([start, end]))
+    offset = (0.025 if side == "left" else -0.02, 0.01)
+    _write(axes, 0.5 * (start + end), offset, text, ha=side, va="center", zorder=6)
 
 
 def _draw_axis(axes: Axes, project: _Projection, root: float) -> None:
@@ -140,15 +150,14 @@ def _draw_axis(axes: Axes, project: _Projection, root: float) -> None:
     arm = project(np.array([[0.0, 0.0, 0.0], [0.0, 0.0, root]]))[:, :2]
     axes.plot(*arm.T, color=GREY, linewidth=0.9)
     stream = project(np.array([[-0.35, 0.0, 0.28], [-0.12, 0.0, 0.28]]))[:, :2]
-    style = {"arrowstyle": "-|>", "mutation_scale": 9.0, "color": GREY, "linewidth": 1.2}
-    axes.add_patch(FancyArrowPatch(*stream, **style))
-    axes.text(*(stream[0] + (0.0, 0.04)), r"$v_\infty$", color="#5A656E", ha="center")
+    _point(axes, stream, GREY)
+    _write(axes, stream[0], (0.0, 0.04), r"$v_\infty$", color="#5A656E", ha="center")
     turn = np.linspace(0.6, 2.2, 25) * np.pi
     circle = np.stack([np.zeros_like(turn), 0.07 * np.cos(turn), 0.07 * np.sin(turn)], axis=1)
     curve = project(circle)[:, :2]
     axes.plot(*curve.T, color=GREY, linewidth=1.2)
-    axes.add_patch(FancyArrowPatch(curve[-2], curve[-1], **style))
-    axes.text(curve[:, 0].min() - 0.02, 0.0, r"$\omega_p$", color="#5A656E", ha="right")
+    _point(axes, curve[-2:], GREY)
+    axes.text(float(curve[:, 0].min()) - 0.02, 0.0, r"$\omega_p$", color="#5A656E", ha="right")
 
 
 # --- the algorithm -----------------------------------------------------------------------------
