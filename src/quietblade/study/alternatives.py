@@ -5,22 +5,25 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.sparse import csr_matrix, diags_array
 
 from quietblade.case import Case
 from quietblade.geometry import Blade
 from quietblade.mesh import Mesh, build_mesh
 from quietblade.mesh.motion import MeshMotion, solve_mesh_motion
 from quietblade.results.alternatives import AlternativeTable
-from quietblade.results.model import ConfigurationResult
-from quietblade.results.peaks import find_peaks
+from quietblade.results.peaks import assign_peaks
 from quietblade.study import translate
-from quietblade.study.outcome import configuration_result
+from quietblade.study.outcome import peak_table
 from quietblade.study.preflight import preflight
 from quietblade.study.run import run_key
-from quietblade.study.sound import solve_sound
+from quietblade.study.sound import Sound, solve_sound
 from quietblade.study.statics import Statics, solve_statics
 from quietblade.study.vibration import Share, Vibration, frequencies, solve_vibration
 from quietblade.typing import FloatArray, Progress, silent
+from quietblade.vibroacoustics.bands import band_mean
+from quietblade.vibroacoustics.matching import match
+from quietblade.vibroacoustics.power import level
 
 NAN = float("nan")
 
@@ -112,11 +115,10 @@ def tabulate(
         vibration = alternative.vibration
         grid = frequencies(case, [vibration])
         sound = solve_sound(case, vibration, grid, progress)
-        found = configuration_result(case, vibration, sound, first)
         first = first or vibration
         names.append(alternative.name)
         descriptions.append(alternative.description)
-        rows.append((_columns(first.naming.name, found), found.bands.mean_level))
+        rows.append((_columns(first, vibration, sound), _mean_level(sound)))
     if first is None:
         raise ValueError("there is no alternative to tabulate")
     columns = np.array([row for row, _ in rows])
@@ -136,21 +138,30 @@ def tabulate(
     )
 
 
-def _columns(reference: tuple[str, ...], found: ConfigurationResult) -> FloatArray:
+def _columns(first: Vibration, vibration: Vibration, sound: Sound) -> FloatArray:
     """Frequency, loss, similarity, peak and its level of each mode of the reference, (5, m)."""
-    modes, peaks = found.modes, find_peaks(found)
-    own = not any(modes.partner)
-    columns = np.full((5, len(reference)), NAN)
-    for k, (name, partner) in enumerate(zip(modes.name, modes.partner, strict=True)):
-        mode = name if own else partner
-        if mode not in reference:
-            continue
-        peak = peaks.get(name)
-        columns[:, reference.index(mode)] = (
+    modes, damped = vibration.modes, vibration.damped
+    own, theirs = (v.shapes.reshape(len(v.shapes), -1) for v in (vibration, first))
+    found = match(own, theirs, csr_matrix(diags_array(np.repeat(first.masses, 3))))
+    loss = modes.loss_factor.copy()
+    loss[damped.start[damped.converged]] = damped.loss_factor[damped.converged]
+    names = vibration.naming.name
+    peaks = assign_peaks(names, modes.frequency, peak_table(sound))
+    columns = np.full((5, len(first.naming.name)), NAN)
+    for k in np.flatnonzero(found.partner >= 0):
+        peak = peaks.get(names[k])
+        columns[:, found.partner[k]] = (
             modes.frequency[k],
-            modes.loss_factor[k],
-            1.0 if own else modes.partner_mac[k],
+            loss[k],
+            found.assurance[k],
             peak.frequency if peak else NAN,
             peak.level if peak else NAN,
         )
     return columns
+
+
+def _mean_level(sound: Sound) -> float:
+    """Level of the mean power over the band [dB re 1 pW]."""
+    solved = np.isfinite(sound.budget.radiated)
+    frequency, power = sound.frequency[solved], sound.budget.radiated[solved]
+    return float(level(np.array(band_mean(frequency, power, (frequency[0], frequency[-1])))))

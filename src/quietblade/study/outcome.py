@@ -256,7 +256,7 @@ def configuration_result(
         spectrum=_spectrum(case, vibration, sound),
         dissipation=dissipation(vibration, sound),
         sweep=_sweep(case, sound),
-        peaks=_peaks(sound),
+        peaks=peak_table(sound),
         bands=far_outcome.band_table(case, sound),
         far_field=far_outcome.far_field_result(operators.radius, sound.far),
         directivity=far_outcome.directivity_result(case, sound.far),
@@ -301,7 +301,8 @@ def _sweep(case: Case, sound: Sound) -> model.SweepRecord:
     )
 
 
-def _peaks(sound: Sound) -> model.PeakTable:
+def peak_table(sound: Sound) -> model.PeakTable:
+    """Put the peaks of the sound power in a table."""
     peaks = sound.peaks
     return model.PeakTable(peaks.frequency, level(peaks.power), peaks.width, peaks.estimate)
 
