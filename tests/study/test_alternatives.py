@@ -91,7 +91,7 @@ def test_without_load_nothing_moves(loaded: LoadedBlade) -> None:
     at_rest = vibrate(still, at_rest=True, progress=silent)
     for _, share in list(SHARES.values())[:2]:
         again = vibrate(still, share, progress=silent)
-        np.testing.assert_allclose(again.modes.frequency, at_rest.modes.frequency, rtol=1e-9)
+        np.testing.assert_allclose(again.modes.frequency, at_rest.modes.frequency, rtol=1e-7)
 
 
 def test_water_meshed_anew_gives_the_same_modes(loaded: LoadedBlade) -> None:

@@ -13,7 +13,7 @@ import numpy as np
 from quietblade.errors import MeshError
 from quietblade.mesh.build import gmsh_session, set_growth
 from quietblade.mesh.model import INTERFACE, CellBlock, Mesh, Quality
-from quietblade.mesh.motion import MeshMotion
+from quietblade.mesh.motion import MeshMotion, solve_mesh_motion
 from quietblade.mesh.quality import tetrahedron_jacobians
 from quietblade.typing import FloatArray, IntArray
 
@@ -28,8 +28,8 @@ def remesh_water(
 ) -> tuple[Mesh, MeshMotion]:
     """Mesh the water anew around the deformed blade.
 
-    Solid cells and the triangles of both surfaces stay; the cells between are new.  The motion
-    moves the nodes of the solid only: the water of the mesh without it is no mesh of C0.
+    Solid cells and the triangles of both surfaces stay; the cells between are new, and moved back
+    to C0, so that the result can be used as any mesh.
 
     Parameters
     ----------
@@ -42,14 +42,14 @@ def remesh_water(
     Returns
     -------
     Mesh
-        The same solid on C0 with the new water of C1.
+        On C0: the same solid with the new water, moved back.
     MeshMotion
         From there to C1.
 
     Raises
     ------
     MeshError
-        The water cannot be meshed, or one of its cells is inverted.
+        The water cannot be meshed, or a cell is inverted there or when it is moved back.
     """
     solid = [block for name, blocks in mesh.cells.items() if name != "water" for block in blocks]
     solid_nodes = np.unique(np.concatenate([block.connectivity.ravel() for block in solid]))
@@ -65,23 +65,26 @@ def remesh_water(
     )
     placed, water = _second_order(corners, tetrahedra, np.concatenate([inner, faces["outer"]]))
     least = _least_jacobian(placed, water)
-    moved = np.zeros_like(placed)
-    moved[: len(kept)] = u
-    nodes = placed.copy()
-    nodes[: len(kept)] = mesh.nodes[kept]
+    there = np.zeros_like(placed)
+    there[: len(kept)] = u
     cells = {
         name: tuple(CellBlock(block.kind, number[block.connectivity]) for block in blocks)
         for name, blocks in mesh.cells.items()
     }
-    new = replace(
+    deformed = replace(
         mesh,
-        nodes=nodes,
+        nodes=placed,
         cells={**cells, "water": (CellBlock("tetra10", water),)},
         faces=faces,
         quality={**mesh.quality, "water": replace(quality, least_jacobian=least)},
     )
+    back = solve_mesh_motion(deformed, -there, 0.0)
+    nodes = placed + back.displacement
+    nodes[: len(kept)] = mesh.nodes[kept]
     gap = float(mesh.radius - np.linalg.norm(placed[inner] - mesh.centre, axis=-1).max())
-    return new, MeshMotion(moved, least, (1.0, 1.0), gap, 1)
+    volumes = (1.0 / back.volume_ratio[1], 1.0 / back.volume_ratio[0])
+    motion = MeshMotion(placed - nodes, least, volumes, gap, back.steps)
+    return replace(deformed, nodes=nodes), motion
 
 
 def _fill(
