@@ -9,11 +9,12 @@ STAMP  := .venv/installed.stamp
 LOCK   := requirements-dev.lock
 
 .DEFAULT_GOAL := help
-.PHONY: help demo paper test verify bench docs lint lock clean clean-all
+.PHONY: help demo paper paper-page test verify bench docs lint lock clean clean-all
 
 help:
 	@echo "make demo     the paper's two blades, from case file to sound power"
 	@echo "make paper    the paper's study claim by claim, at its size (resumable; an hour or more)"
+	@echo "make paper-page  the page of the paper, from the runs of its study"
 	@echo "make test     the tests, on $(JOBS) processes (JOBS=1 for one)"
 	@echo "make verify   the reference checks, written to build/verification.json"
 	@echo "make bench    the benchmarks, written to build/benchmarks.json"
@@ -45,6 +46,12 @@ demo: $(STAMP)
 
 paper: $(STAMP)
 	$(BIN)/quietblade study cases/paper.toml
+
+# What goes beyond the paper, on a middle mesh, and the page; the study itself: make paper.
+paper-page: $(STAMP)
+	$(BIN)/python -m tools.paper_beyond
+	$(BIN)/quietblade study cases/paper-beyond.toml --out runs/paper/beyond
+	$(BIN)/python -m tools.paper_page
 
 # Many small problems: one thread each, so that processes do not fight for the cores.
 test: export OMP_NUM_THREADS = 1

@@ -74,7 +74,7 @@ def build_mesh(blade: Blade, spec: MeshSpec) -> Mesh:
         The volumes cannot be made or meshed, or a cell is inverted (with the place).
     """
     centre = np.array(spec.centre)
-    with _gmsh_session():
+    with gmsh_session():
         try:
             solids = build_solids(blade, centre, spec.radius, spec.patches)
             _set_film_layer(blade, solids, spec.size)
@@ -93,7 +93,7 @@ def build_mesh(blade: Blade, spec: MeshSpec) -> Mesh:
 
 
 @contextmanager
-def _gmsh_session() -> Iterator[None]:
+def gmsh_session() -> Iterator[None]:
     """Use gmsh quietly and reproducibly, and leave nothing behind."""
     gmsh.initialize(interruptible=False)
     try:
@@ -151,27 +151,31 @@ def _wetted_faces(solids: Solids) -> list[int]:
 
 def _set_sizes(solids: Solids, spec: MeshSpec) -> None:
     """Cells of one size on the blade, growing linearly towards the sphere."""
-    mesh = gmsh.model.mesh
-    distance, growth = mesh.field.add("Distance"), mesh.field.add("Threshold")
     wetted = _wetted_faces(solids)
-    mesh.field.setNumbers(distance, "SurfacesList", wetted)
-    mesh.field.setNumber(distance, "Sampling", 60)
-    mesh.field.setNumber(growth, "InField", distance)
-    largest = spec.water_size or 0.25 * spec.radius
-    limits = {
-        "SizeMin": spec.size,
-        "SizeMax": largest,
-        "DistMin": 0.5 * spec.size,
-        "DistMax": 0.5 * spec.size + (largest - spec.size) / _GROWTH,
-    }
-    for name, value in limits.items():
-        mesh.field.setNumber(growth, name, value)
-    mesh.field.setAsBackgroundMesh(growth)
+    set_growth(wetted, spec.size, spec.water_size or 0.25 * spec.radius)
     for outline in solids.outlines:
         side_faces = [f for f in wetted if _carries(f, outline)]
         if len(side_faces) != 1:
             raise MeshError("the excited patch does not lie on one face of the blade")
-        mesh.embed(1, outline, 2, side_faces[0])
+        gmsh.model.mesh.embed(1, outline, 2, side_faces[0])
+
+
+def set_growth(surfaces: list[int], size: float, largest: float) -> None:
+    """Let cells of one size [m] at surfaces grow linearly with the distance to the largest."""
+    field = gmsh.model.mesh.field
+    distance, growth = field.add("Distance"), field.add("Threshold")
+    field.setNumbers(distance, "SurfacesList", surfaces)
+    field.setNumber(distance, "Sampling", 60)
+    field.setNumber(growth, "InField", distance)
+    limits = {
+        "SizeMin": size,
+        "SizeMax": largest,
+        "DistMin": 0.5 * size,
+        "DistMax": 0.5 * size + (largest - size) / _GROWTH,
+    }
+    for name, value in limits.items():
+        field.setNumber(growth, name, value)
+    field.setAsBackgroundMesh(growth)
 
 
 def _carries(face: int, curves: list[int]) -> bool:

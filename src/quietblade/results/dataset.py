@@ -46,6 +46,23 @@ def from_tree(tree: xr.DataTree) -> Result:
     return _read(Result, tree)
 
 
+def record_tree(record: Record) -> xr.DataTree:
+    """Make a tree of a record that stands beside the results of runs, in the group of its name."""
+    return xr.DataTree.from_dict(dict(_datasets(record, f"/{record.group}")))
+
+
+def read_record(cls: type[AnyRecord], tree: xr.DataTree) -> AnyRecord:
+    """Inverse of `record_tree`.
+
+    Raises
+    ------
+    ResultError
+        The tree holds no such record, or lacks a variable, or has one that is not registered.
+    """
+    check_registered(tree)
+    return _read(cls, _member(tree.children, cls.group, ""))
+
+
 def write(tree: xr.DataTree, path: Path) -> None:
     """Write a tree of registered variables as netCDF.
 

@@ -111,6 +111,9 @@ def _groups() -> Iterator[str]:
             if group == "C*":
                 yield ""
                 yield "`C*` stands for `C0` and `C1`."
+            if group == "alternatives":
+                yield ""
+                yield "Not in `result.nc` but in files of its own, of comparisons of models."
         yield ""
         yield "| name | symbol | unit | dimensions | kind | meaning |"
         yield "|---|---|---|---|---|---|"

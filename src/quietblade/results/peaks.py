@@ -5,7 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from quietblade.results.model import ConfigurationResult
+from quietblade.results.model import ConfigurationResult, PeakTable
+from quietblade.typing import FloatArray
 
 _REACH = 0.02
 """A peak is looked for within 2 % of the wet mode: losses and radiation move it far less."""
@@ -38,12 +39,19 @@ def find_peaks(configuration: ConfigurationResult) -> dict[str, Peak]:
 
     The range of a mode ends half-way to its neighbours; the highest peak in it is the mode's.
     """
-    peaks, modes = configuration.peaks, configuration.modes
-    between = 0.5 * (modes.frequency[1:] + modes.frequency[:-1])
-    lowest = np.maximum(np.r_[0.0, between], (1.0 - _REACH) * modes.frequency)
-    highest = np.minimum(np.r_[between, np.inf], (1.0 + _REACH) * modes.frequency)
+    modes = configuration.modes
+    return assign_peaks(modes.name, modes.frequency, configuration.peaks)
+
+
+def assign_peaks(
+    names: tuple[str, ...], frequency: FloatArray, peaks: PeakTable
+) -> dict[str, Peak]:
+    """Peak of each mode, given by name and frequency [Hz], as `find_peaks` does."""
+    between = 0.5 * (frequency[1:] + frequency[:-1])
+    lowest = np.maximum(np.r_[0.0, between], (1.0 - _REACH) * frequency)
+    highest = np.minimum(np.r_[between, np.inf], (1.0 + _REACH) * frequency)
     found = {}
-    for name, low, high in zip(modes.name, lowest, highest, strict=True):
+    for name, low, high in zip(names, lowest, highest, strict=True):
         near = np.flatnonzero((peaks.frequency >= low) & (peaks.frequency <= high))
         if near.size:
             top = near[np.argmax(peaks.power_level[near])]

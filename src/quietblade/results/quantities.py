@@ -83,6 +83,7 @@ DIMENSIONS: Mapping[str, str] = MappingProxyType(
         "fallback": "changes of solver during the run",
         "notice": "warnings",
         "package": "packages that the result depends on",
+        "alternative": "models of one blade that are compared; the first one is the reference",
     }
 )
 """Every dimension and what runs along it."""
@@ -614,6 +615,23 @@ _GROUPS: dict[str, tuple[Quantity, ...]] = {
         _q("value", "", "", "notice", "the value in SI units, or NaN"),
         _q("limit", "", "", "notice", "the limit that it is compared with, or NaN"),
         _text("remedy", "notice", "what can be done about it"),
+    ),
+    "alternatives": (
+        _text("title", "", "what is compared"),
+        _text("name", "alternative", "alternative"),
+        _text("description", "alternative", "what it is"),
+        _text("mode", "mode", "wet mode of the reference"),
+        _q("frequency", "f_n", "Hz", "alternative mode", "natural frequency in the water",
+           "of the mode that is most like that of the reference"),
+        _q("loss_factor", "eta_n", "1", "alternative mode", "loss factor"),
+        _q("assurance", "MAC", "1", "alternative mode", "similarity to the mode of the reference"),
+        _q("peak_frequency", "f", "Hz", "alternative mode", "where its radiated power is largest"),
+        _q("peak_level", "L_W", "dB", "alternative mode", "sound power level there",
+           reference="1 pW"),
+        _q("mean_level", "L_W", "dB", "alternative", "level of the mean power over the band",
+           reference="1 pW"),
+        _q("element_size", "h", "m", "", "edge length of the elements on the blade"),
+        _text("content_key", "", "hash of the case and of the code that the table depends on"),
     ),
     "fields": (
         _q("displacement", "u_1", "m", "axis", "steady displacement from C0 to C1"),

@@ -263,7 +263,7 @@ def configuration_result(
         spectrum=_spectrum(vibration, sound),
         dissipation=dissipation(vibration, sound),
         sweep=_sweep(case, sound),
-        peaks=_peaks(sound),
+        peaks=peak_table(sound),
         stepped=_stepped(sound),
         bands=far_outcome.band_table(case, sound),
         far_field=far_outcome.far_field_result(operators.radius, sound.far),
@@ -311,7 +311,8 @@ def _sweep(case: Case, sound: Sound) -> model.SweepRecord:
     )
 
 
-def _peaks(sound: Sound) -> model.PeakTable:
+def peak_table(sound: Sound) -> model.PeakTable:
+    """Put the peaks of the sound power in a table."""
     peaks = sound.peaks
     return model.PeakTable(peaks.frequency, level(peaks.power), peaks.width, peaks.estimate)
 

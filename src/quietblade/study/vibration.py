@@ -15,7 +15,7 @@ from quietblade.mesh import Mesh
 from quietblade.mesh.model import INTERFACE
 from quietblade.mesh.motion import MeshMotion
 from quietblade.propulsion.structure import Structure, StructureState
-from quietblade.propulsion.tangent import Tangent, compute_tangent
+from quietblade.propulsion.tangent import STIFFNESS, Tangent, compute_tangent
 from quietblade.study import losses, translate
 from quietblade.study.clock import within
 from quietblade.study.excitations import Excited, excite, needs_root, root_centre
@@ -43,6 +43,25 @@ lie, not what they are: these, and the estimate of their error, come from the ma
 
 FAST_SPIN = 0.05
 """Ratio 2 omega_p / omega_1 beyond which the neglected Coriolis force is noticed."""
+
+
+@dataclass(frozen=True)
+class Share:
+    """What of the steady load counts in the linear problem about C1 (theory: S2-1).
+
+    Attributes
+    ----------
+    shape : bool
+        Whether the blade, and the water around it, have the deformed shape.
+    prestress : bool
+        Whether the stress of the load acts, with the loads in balance with it.
+    pieces : tuple of str or None
+        Pieces of the tangent that are added up; by default those that the case asks for.
+    """
+
+    shape: bool = True
+    prestress: bool = True
+    pieces: tuple[str, ...] | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,14 +125,19 @@ def linear_problem(
     structure: Structure,
     state: StructureState,
     field: ngs.GridFunction | None,
+    share: Share | None = None,
 ) -> tuple[Tangent, Operators]:
-    """Assemble eq. (7) about a state of the structure, on the mesh that is moved to it."""
-    tangent = compute_tangent(structure, state)
+    """Assemble eq. (7) about a state of the structure, on the mesh that is moved to it.
+
+    With a `Share`, only that part of the state counts.
+    """
+    part = share or Share()
+    tangent = compute_tangent(structure, state, shape=part.shape, prestress=part.prestress)
     on_springs = case.root.support == "elastic"  # then the root face moves in the water too
     with ngs.TaskManager():
         operators = build_operators(
             mesh.fem,
-            stiffness=tangent.stiffness(case.acoustics.tangent),
+            stiffness=_stiffness(case, tangent, share),
             loss=losses.loss_parts(case, losses.moduli(case), structure, state, tangent),
             mass=tangent.mass,
             water=translate.water(case),
@@ -126,6 +150,12 @@ def linear_problem(
     return tangent, operators
 
 
+def _stiffness(case: Case, tangent: Tangent, share: Share | None) -> csr_matrix:
+    if share is None or share.pieces is None:
+        return tangent.sum(STIFFNESS[case.acoustics.tangent])
+    return tangent.sum(share.pieces)
+
+
 def _moving_root(
     case: Case,
     mesh: Mesh,
@@ -134,6 +164,7 @@ def _moving_root(
     tangent: Tangent,
     operators: Operators,
     field: ngs.GridFunction | None,
+    share: Share | None,
 ) -> RootedSystem:
     """Let the clamped root of a system move."""
     with ngs.TaskManager():
@@ -141,7 +172,7 @@ def _moving_root(
             operators,
             mesh.fem,
             mesh.basis,
-            stiffness=tangent.stiffness(case.acoustics.tangent),
+            stiffness=_stiffness(case, tangent, share),
             mass=tangent.mass,
             loss=losses.loss_parts(case, losses.moduli(case), structure, state, tangent),
             water=translate.water(case),
@@ -157,19 +188,27 @@ def solve_vibration(
     statics: Statics,
     motion: MeshMotion | None,
     progress: Progress,
+    share: Share | None = None,
 ) -> Vibration:
-    """Set up the linear problem about C0 (no motion) or C1, and find its modes."""
+    """Set up the linear problem about C0 (no motion) or C1, and find its modes.
+
+    With a `Share`, only that part of the steady load counts; without the deformed shape the
+    problem is on the mesh of C0.
+    """
     name = "C0" if motion is None else "C1"
+    loaded = motion is not None
+    if share is not None and not share.shape:
+        motion = None
     structure = statics.structure
-    state = structure.rest() if motion is None else statics.state.structure
+    state = statics.state.structure if loaded else structure.rest()
     field = None if motion is None else displacement_field(mesh, motion)
     positions = mesh.nodes if motion is None else mesh.nodes + motion.displacement
     bent = None if motion is None else statics.state.coupled.sections
     frames = SectionFrames.of(blade, mesh, bent)
-    tangent, operators = linear_problem(case, mesh, structure, state, field)
+    tangent, operators = linear_problem(case, mesh, structure, state, field, share)
     root = None
     if needs_root(case):
-        root = _moving_root(case, mesh, structure, state, tangent, operators, field)
+        root = _moving_root(case, mesh, structure, state, tangent, operators, field, share)
         operators = root.operators
     slow: tuple[Notice, ...] = ()
     if case.acoustics.flow_damping:

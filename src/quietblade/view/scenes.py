@@ -4,7 +4,7 @@
 They are made from the VTU files of a run.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -66,7 +66,51 @@ def draw_deformed(folder: RunFolder, result: Result, largest: float | None = Non
     largest : float, optional
         Shear strain at the end of the colour scale, to compare blades; by default the run's own.
     """
-    rigid = _solid(read_fields(folder.static_fields))
+    own = result.static.max_film_shear_strain
+    strained = np.isfinite(own)
+    limits = (0.0, 100.0 * (own if largest is None else largest) if strained else 1.0)
+    (image,) = cropped([deformed_picture(folder, limits)])
+    figure = new_figure(1.15 + WIDTH * image.shape[0] / image.shape[1])
+    axes = figure.subplots()
+    tip = ", ".join(f"{1e3 * u:z.1f}" for u in result.static.tip_displacement)
+    _show(axes, image, f"{result.title}: rigid and deformed\nTip displacement ({tip}) mm, to scale")
+    if strained:
+        strain_bar(figure, [axes], limits)
+    return figure
+
+
+@styled
+def draw_deformed_blades(folders: Mapping[str, RunFolder], results: Mapping[str, Result]) -> Figure:
+    """Deformed blades with the shear strain of their films, one below the other.
+
+    Length and colour have the same scale in all pictures.
+
+    Parameters
+    ----------
+    folders, results : mappings
+        Of the runs, by the name that the picture gets.
+    """
+    largest = max(result.static.max_film_shear_strain for result in results.values())
+    limits = (0.0, 100.0 * largest)
+    boxes = np.array([_reach(folder) for folder in folders.values()])
+    bounds = np.where([True, False] * 3, boxes.min(axis=0), boxes.max(axis=0)).tolist()
+    pictures = cropped([deformed_picture(f, limits, bounds) for f in folders.values()])
+    pictures = [_without_empty_rows(picture) for picture in pictures]  # width: the scale
+    heights = [WIDTH * picture.shape[0] / picture.shape[1] for picture in pictures]
+    figure = new_figure(0.9 + sum(heights) + 0.3 * len(heights))
+    panels = list(np.atleast_1d(figure.subplots(len(heights), 1, height_ratios=heights)))
+    for panel, (name, result), picture in zip(panels, results.items(), pictures, strict=True):
+        gamma = 100.0 * result.static.max_film_shear_strain
+        _show(panel, picture, f"{name}: largest shear strain of the film {gamma:.2g} %")
+    strain_bar(figure, panels, limits)
+    return figure
+
+
+def deformed_picture(
+    folder: RunFolder, limits: tuple[float, float], bounds: Sequence[float] | None = None
+) -> AnyArray:
+    """Picture of the blade at rest and deformed, its film coloured by the shear strain [%]."""
+    rigid = solid_of(read_fields(folder.static_fields))
     deformed = moved(rigid, field_values(rigid, "displacement"))
     film = region(deformed, "film")
     stage = Stage((2400, 1500))
@@ -75,25 +119,34 @@ def draw_deformed(folder: RunFolder, result: Result, largest: float | None = Non
     stage.add(curved_surface(deformed), color="#5B7083", opacity=0.25)
     stage.add(sharp_edges(deformed), color=_LINES, line_width=2.5)
     if film.n_cells:
-        strain = 100.0 * field_values(film, "film_shear_strain")
-        limits = (0.0, float(np.nanmax(strain)) if largest is None else 100.0 * largest)
-        film.point_data["percent"] = strain
+        film.point_data["percent"] = 100.0 * field_values(film, "film_shear_strain")
         stage.add(curved_surface(film), scalars="percent", cmap=SEQUENTIAL, clim=limits)
-    (image,) = cropped([stage.picture(FROM_UPSTREAM)])
-    figure = new_figure(1.15 + WIDTH * image.shape[0] / image.shape[1])
-    axes = figure.subplots()
-    tip = ", ".join(f"{1e3 * u:z.1f}" for u in result.static.tip_displacement)
-    _show(axes, image, f"{result.title}: rigid and deformed\nTip displacement ({tip}) mm, to scale")
-    if film.n_cells:
-        bar = _color_bar(figure, axes, limits, SEQUENTIAL, location="bottom", shrink=0.6, aspect=40)
-        bar.set_label("Shear strain of the film, engineering $\\gamma$ [%]")
-    return figure
+    return stage.picture(FROM_UPSTREAM, bounds)
+
+
+def strain_bar(figure: Figure, axes: list[Axes], limits: tuple[float, float]) -> None:
+    """Colour scale of the film's shear strain."""
+    bar = _color_bar(figure, axes, limits, SEQUENTIAL, location="bottom", shrink=0.6, aspect=40)
+    bar.set_label("Shear strain of the film, engineering $\\gamma$ [%]")
+
+
+def _without_empty_rows(image: AnyArray) -> AnyArray:
+    rows = np.flatnonzero(np.any(image != 255, axis=(1, 2)))
+    return image[rows[0] : rows[-1] + 1] if rows.size else image
+
+
+def _reach(folder: RunFolder) -> tuple[float, ...]:
+    """Box around the blade at rest and deformed."""
+    rigid = solid_of(read_fields(folder.static_fields))
+    deformed = moved(rigid, field_values(rigid, "displacement"))
+    both = np.array([rigid.bounds, deformed.bounds])
+    return tuple(np.where([True, False] * 3, both.min(axis=0), both.max(axis=0)))
 
 
 @styled
 def draw_stress(folder: RunFolder, result: Result) -> Figure:
     """Von Mises stress on both faces of the deformed blade."""
-    rigid = _solid(read_fields(folder.static_fields))
+    rigid = solid_of(read_fields(folder.static_fields))
     blade = region(moved(rigid, field_values(rigid, "displacement")), "blade")
     stress = 1e-6 * field_values(blade, "von_mises_stress", "blade")
     limits = (0.0, float(np.nanmax(stress)))
@@ -182,8 +235,8 @@ def _planform(grid: pv.UnstructuredGrid) -> AnyArray:
     if film.n_cells:
         stage.add(curved_surface(film), color=_FILM)
         stage.add_lines(outer_edges(film), FROM_ABOVE, color=_LINES, line_width=1.5)
-    stage.add(curved_surface(_solid(grid)), color=_BLADE, opacity=0.35)
-    stage.add(sharp_edges(_solid(grid)), color=_LINES, line_width=2.5)
+    stage.add(curved_surface(solid_of(grid)), color=_BLADE, opacity=0.35)
+    stage.add(sharp_edges(solid_of(grid)), color=_LINES, line_width=2.5)
     excited = region(grid, "excited")
     if excited.n_cells:
         stage.add(excited.extract_surface(algorithm="dataset_surface"), color=_EXCITED)
@@ -192,7 +245,7 @@ def _planform(grid: pv.UnstructuredGrid) -> AnyArray:
 
 def _surface_mesh(grid: pv.UnstructuredGrid) -> AnyArray:
     stage = Stage((2400, 700))
-    solid = _solid(grid)
+    solid = solid_of(grid)
     stage.add(curved_surface(solid), color=_BLADE)
     stage.add_lines(outer_edges(solid), FROM_ABOVE, color=_LINES, line_width=2.0)
     return stage.picture(FROM_ABOVE)
@@ -223,8 +276,8 @@ def _planform_title(grid: pv.UnstructuredGrid) -> str:
     return f"From the suction side: root left, leading edge below{excited}"
 
 
-def _solid(grid: pv.UnstructuredGrid) -> pv.UnstructuredGrid:
-    """Blade and film as one body: the surface of the blade alone has the film's bed."""
+def solid_of(grid: pv.UnstructuredGrid) -> pv.UnstructuredGrid:
+    """Take blade and film as one body: the surface of the blade alone has the film's bed."""
     return grid.extract_cells(np.flatnonzero(grid.celltypes != CELL_TYPES["triangle6"]))
 
 

@@ -85,7 +85,7 @@ def draw_sound_power(result: Result, pictures: Mapping[str, AnyArray] | None = N
         for name, configuration in result.configurations.items()
     ]
     title = f"Sound power: {result.title}"
-    return _draw_spectra(curves, title, _LEVEL, pictures or {}, (result, "sound-power"))
+    return _draw_spectra(curves, title, _LEVEL, pictures or {}, limited=(result, "sound-power"))
 
 
 @styled
@@ -96,18 +96,39 @@ def draw_source_level(result: Result) -> Figure:
         for name, configuration in result.configurations.items()
     ]
     title = f"Source level, mean over all directions: {result.title}"
-    return _draw_spectra(curves, title, _SOURCE_LEVEL, {}, (result, "source-level"))
+    return _draw_spectra(curves, title, _SOURCE_LEVEL, limited=(result, "source-level"))
 
 
 @styled
-def draw_sound_power_at_rest(results: Sequence[Result]) -> Figure:
-    """Sound power of several blades at rest."""
+def draw_sound_power_at_rest(
+    results: Sequence[Result], pictures: Sequence[Mapping[str, AnyArray]] = ()
+) -> Figure:
+    """Sound power of several blades at rest.
+
+    Parameters
+    ----------
+    results : sequence of Result
+    pictures : sequence of mapping, optional
+        Pictures of the mode shapes of the first blade, drawn above, and of the second, below.
+    """
     curves = [
         _Curve.of_power(result.blade or result.title, result.configurations["C0"], stroke)
         for result, stroke in zip(results, SERIES, strict=False)
         if "C0" in result.configurations
     ]
-    return _draw_spectra(curves, "Sound power at rest (C0)", _LEVEL, {})
+    return _draw_spectra(curves, "Sound power at rest (C0)", _LEVEL, *pictures[:2])
+
+
+@styled
+def draw_sound_power_of(
+    members: Mapping[str, ConfigurationResult], title: str, strokes: Sequence[Stroke] = SERIES
+) -> Figure:
+    """Sound power of several configurations by the name that each curve gets."""
+    curves = [
+        _Curve.of_power(name, configuration, stroke)
+        for (name, configuration), stroke in zip(members.items(), strokes, strict=False)
+    ]
+    return _draw_spectra(curves, title, _LEVEL)
 
 
 @styled
@@ -139,14 +160,23 @@ def _draw_spectra(
     curves: Sequence[_Curve],
     title: str,
     unit: str,
-    pictures: Mapping[str, AnyArray],
+    *pictures: Mapping[str, AnyArray],
     limited: tuple[Result, str] | None = None,
 ) -> Figure:
-    """Draw the spectra; ``limited`` is a result with limits, and the quantity of these levels."""
-    shown = _peaks_with_picture(curves, pictures)
-    figure = new_figure(4.9 if shown else 3.6)
-    grid = figure.add_gridspec(2 if shown else 1, 1, height_ratios=[0.28, 1.0] if shown else [1.0])
-    axes = figure.add_subplot(grid[-1])
+    """Draw the spectra, with pictures of modes of the first above them and of the second below.
+
+    ``limited`` is a result with limits, and the quantity of these levels.
+    """
+    shown = [
+        _peaks_with_picture(curve, of_modes)
+        for curve, of_modes in zip(curves, pictures, strict=False)
+    ]
+    above = bool(shown and shown[0])
+    below = len(shown) > 1 and bool(shown[1])
+    figure = new_figure(3.6 + 1.3 * (above + below))
+    ratios = [0.28] * above + [1.0] + [0.28] * below
+    grid = figure.add_gridspec(len(ratios), 1, height_ratios=ratios)
+    axes = figure.add_subplot(grid[int(above)])
     figure.suptitle(title, x=0.01, ha="left", fontsize=9.0)
     labels = {of_signal(unit, random=curve.configuration.random): None for curve in curves}
     axes.set(xlabel=_FREQUENCY, ylabel=" or ".join(labels or {unit: None}))
@@ -174,9 +204,12 @@ def _draw_spectra(
         + f"\n{_sweep_note([c.configuration for c in curves])}",
         title_fontsize=7.5,
     )
-    if shown:
-        members = [(peak, pictures[peak.mode], tops[peak.mode]) for peak in shown]
+    if above:
+        members = [(peak, pictures[0][peak.mode], tops[peak.mode]) for peak in shown[0]]
         _draw_pictures(figure, grid[0], axes, members)
+    if below:
+        members = [(p, pictures[1][p.mode], (p.frequency, p.level)) for p in shown[1]]
+        _draw_pictures(figure, grid[-1], axes, members, below=True)
     return figure
 
 
@@ -257,13 +290,9 @@ def _level(power: FloatArray) -> FloatArray:
 # --- pictures of the modes ---------------------------------------------------------------------
 
 
-def _peaks_with_picture(
-    curves: Sequence[_Curve], pictures: Mapping[str, AnyArray]
-) -> tuple[Peak, ...]:
-    """Peaks of the first curve that have a picture, at most the six highest, by frequency."""
-    if not curves:
-        return ()
-    peaks = [p for name, p in curves[0].peaks.items() if name in pictures]
+def _peaks_with_picture(curve: _Curve, pictures: Mapping[str, AnyArray]) -> tuple[Peak, ...]:
+    """Peaks of a curve that have a picture, at most the six highest, by frequency."""
+    peaks = [p for name, p in curve.peaks.items() if name in pictures]
     highest = sorted(peaks, key=lambda p: -p.level)[:6]
     return tuple(sorted(highest, key=lambda p: p.frequency))
 
@@ -273,18 +302,20 @@ def _draw_pictures(
     strip: SubplotSpec,
     axes: Axes,
     members: Sequence[tuple[Peak, AnyArray, tuple[float, float]]],
+    *,
+    below: bool = False,
 ) -> None:
-    """Draw the pictures in a row, each tied to the name of its peak."""
+    """Draw the pictures in a row, each tied to its peak: above to the name, below to the point."""
     row = strip.subgridspec(1, len(members), wspace=0.05)
-    for column, (peak, picture, name_top) in enumerate(members):
+    for column, (peak, picture, end) in enumerate(members):
         ax = figure.add_subplot(row[0, column])
         ax.imshow(picture, interpolation="antialiased")
         ax.set_axis_off()
         ax.set_title(f"{peak.mode}, {peak.frequency:.1f} Hz", fontsize=8.0, loc="center")
         tie = ConnectionPatch(
-            xyA=(0.5, 0.0),
+            xyA=(0.5, 1.25 if below else 0.0),  # clear of the title
             coordsA=ax.transAxes,
-            xyB=name_top,
+            xyB=end,
             coordsB=axes.transData,
             color=GREY,
             linewidth=0.6,
