@@ -167,3 +167,15 @@ def test_second_run_in_a_folder_is_refused_and_a_killed_one_leaves_it_free(tmp_p
         pass
     with locked(tmp_path), pytest.raises(ResultError, match="at work"), locked(tmp_path):
         pass
+
+
+def test_a_run_borrows_from_another_and_leaves_it_as_it_is(tmp_path: Path) -> None:
+    lender, borrower = StageStore(tmp_path / "a"), StageStore(tmp_path / "b")
+    lender.keep("mesh", ORIGIN, LAP, np.arange(3.0), {})
+    borrower.borrow(tmp_path / "a")
+    np.testing.assert_array_equal(borrower.read("mesh", {}), np.arange(3.0))
+    other = Origin({"mesh.size": 0.2}, {}, {"quietblade": "1"})
+    borrower.keep("mesh", other, LAP, np.zeros(2), {})
+    np.testing.assert_array_equal(lender.read("mesh", {}), np.arange(3.0))
+    borrower.borrow(tmp_path / "a")  # what it has of its own stays
+    np.testing.assert_array_equal(borrower.read("mesh", {}), np.zeros(2))

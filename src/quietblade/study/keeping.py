@@ -14,6 +14,7 @@ classes of quietblade, NumPy and SciPy: a folder from somebody else cannot run c
 import hashlib
 import json
 import pickle
+import shutil
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from dataclasses import asdict, dataclass, fields, is_dataclass
@@ -138,6 +139,19 @@ class StageStore:
         write_text(self._card(stage), json.dumps(card, indent=1) + "\n")
         self._remove(f"{_file_name(stage)}-*.pickle", but=content)
 
+    def borrow(self, other: Path) -> None:
+        """Take over what another run's folder of stages has and this one lacks.
+
+        What does not fit the case is found out when it is asked for, as after any change.
+        """
+        for card in other.glob("*.json"):
+            content = next(other.glob(f"{card.stem}-*.pickle"), None)
+            if content is None or (self._folder / card.name).exists():
+                continue
+            self._folder.mkdir(parents=True, exist_ok=True)
+            _take(content, self._folder / content.name)
+            _take(card, self._folder / card.name)
+
     def tidy(self, stages: Iterable[str]) -> None:
         """Remove what killed runs have left half-written, and results of stages there are not."""
         self._remove(".*")
@@ -157,6 +171,17 @@ class StageStore:
         for file in self._folder.glob(pattern):
             if file != but:
                 file.unlink(missing_ok=True)
+
+
+def _take(file: Path, place: Path) -> None:
+    """Have a file in two places, without a second copy where the file system can do that."""
+    with suppress(FileExistsError):
+        try:
+            place.hardlink_to(file)
+        except (OSError, NotImplementedError) as error:
+            if isinstance(error, FileExistsError):
+                raise
+            shutil.copy2(file, place)
 
 
 def _file_name(stage: str) -> str:

@@ -25,6 +25,7 @@ from quietblade.results.study_table import (
 )
 from quietblade.results.table import Table
 from quietblade.results.tables import as_text
+from quietblade.study.keeping import StageStore
 from quietblade.study.run import finished, run_case
 from quietblade.typing import Progress, silent
 
@@ -156,6 +157,7 @@ def run_study(
     runs = plan(study)
     results: dict[tuple[str, str], Result] = {}
     rows: list[StudyRow] = []
+    lenders: dict[str, RunFolder] = {}  # the run before of each case: often of the same mesh
     computed = 0
     for number, run in enumerate(runs, start=1):
         folder = RunFolder(root / run.name)
@@ -164,6 +166,8 @@ def run_study(
         message = ""
         if result is None:
             computed += 1
+            if run.case in lenders:
+                StageStore(folder.stages).borrow(lenders[run.case].stages)
             try:
                 result = runner(run.words, folder, progress)
             except (QuietbladeError, MemoryError) as error:
@@ -171,6 +175,7 @@ def run_study(
                 announce(number, len(runs), run.name, f"failed: {message}")
         if result is not None:
             results[run.case, run.variant] = result
+            lenders[run.case] = folder
         rows.append(_row(run, result, message))
     table = StudyTable(study.title, tuple(rows), study.figures or SHOWN)
     claims = _claims(study, results)
