@@ -12,7 +12,7 @@ import numpy as np
 
 from quietblade.errors import MeshError
 from quietblade.mesh.build import gmsh_session, set_growth
-from quietblade.mesh.model import INTERFACE, CellBlock, Mesh, Quality
+from quietblade.mesh.model import CellBlock, Mesh, Quality
 from quietblade.mesh.motion import MeshMotion, solve_mesh_motion
 from quietblade.mesh.quality import tetrahedron_jacobians
 from quietblade.typing import FloatArray, IntArray
@@ -59,7 +59,7 @@ def remesh_water(
     u = np.zeros((len(kept), 3))
     u[number[solid_nodes]] = displacement[solid_nodes]
     faces = {name: number[triangles] for name, triangles in mesh.faces.items()}
-    inner = np.concatenate([faces[name] for name in (*INTERFACE.split("|"), "root")])
+    inner = np.concatenate([number[mesh.interface], faces["root"]])
     corners, tetrahedra, quality = _fill(
         mesh.nodes[kept] + u, inner, faces["outer"], size, water_size
     )
