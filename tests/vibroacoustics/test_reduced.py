@@ -177,6 +177,14 @@ def test_peaks_are_maxima_with_their_half_power_width() -> None:
             assert above[-1] - above[0] == pytest.approx(width, rel=2e-3)
 
 
+def test_modes_that_climb_to_one_top_make_one_peak() -> None:
+    sweep = reduced(random_operators(11, loss=0.1), 1.0)
+    middle = float(np.mean(BAND))
+    peaks = find_peaks(sweep, BAND, lambda omega: 1.0 / (1.0 + (omega / np.pi / middle - 2.0) ** 2))
+    assert len(sweep.model.light_modes(BAND)[0]) > 1
+    np.testing.assert_allclose(peaks.frequency, [middle], rtol=1e-6)
+
+
 def test_complex_modes_start_from_the_reduced_space() -> None:
     operators = random_operators(2, loss=0.02)
     modes = wet_modes(operators, 1.5 * BAND[1], solver=make_solver(precision="double"))

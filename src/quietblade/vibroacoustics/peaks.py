@@ -13,6 +13,7 @@ from quietblade.vibroacoustics.reduced import ReducedSweep
 _REACH = 4.0  # half-power widths on either side in which the maximum is sought
 _NARROWEST = 1e-7  # relative width of the search for a mode that hardly decays
 _FINE = 1e-12  # relative tolerance of a peak's frequency
+_SAME = 0.01  # tops closer than this share of a mode's width are one: no dip lies between them
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,7 +63,8 @@ def find_peaks(
         return float(powers(np.array([2.0 * np.pi * frequency]))[0])
 
     found: list[float] = []
-    for resonance, loss in zip(*model.light_modes(band), strict=True):
+    # the sharpest first: it finds its top best, and a broad mode may climb to the same one
+    for loss, resonance in sorted(zip(*model.light_modes(band)[::-1], strict=True)):
         reach = _REACH * max(loss, _NARROWEST) * resonance
         low, high = max(band[0], resonance - reach), min(band[1], resonance + reach)
         # as an offset from the resonance, so that a needle is not lost in the digits of f
@@ -73,7 +75,8 @@ def find_peaks(
         )  # fmt: skip
         top, margin = resonance + float(best.x), 1e-3 * (high - low)
         inside = low + margin < top < high - margin
-        if inside and all(abs(top - other) > 1e-9 * top for other in found):
+        apart = _SAME * max(loss, _NARROWEST) * resonance
+        if inside and all(abs(top - other) > apart for other in found):
             found.append(top)
     frequency = np.sort(found)
     return Peaks(
