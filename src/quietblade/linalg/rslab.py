@@ -8,6 +8,7 @@ import numpy as np
 import rslab
 from scipy.sparse import csc_matrix
 
+from quietblade.linalg.memory import require_memory
 from quietblade.linalg.pattern import Pattern, canonical
 from quietblade.linalg.protocol import BackendFailed, Inertia, SparseMatrix
 from quietblade.typing import AnyArray
@@ -47,10 +48,20 @@ class RslabAnalysis:
     symmetric: bool
 
     def factor(self, A: SparseMatrix, *, single: bool) -> "RslabFactor":
-        """Factor in the matrix's precision or, if ``single``, in half of it."""
+        """Factor in the matrix's precision or, if ``single``, in half of it.
+
+        Raises
+        ------
+        SolverError
+            If the factor does not fit into the memory: no other program needs less.
+        BackendFailed
+            If it cannot be made.
+        """
         values = self.pattern.values(canonical(A))
         kind = np.complex128 if np.iscomplexobj(values) else np.float64
         low = "complex64" if kind is np.complex128 else "float32"
+        plan = self.symbolic.memory_plan(low if single else np.dtype(kind).name)
+        require_memory(plan["peak_bytes"] - plan["analysis_bytes"], self.symbolic.n)
         try:
             factor = self.symbolic.factor(
                 values.astype(kind, copy=False),
