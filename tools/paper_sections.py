@@ -126,8 +126,8 @@ def _misses(judged: dict[tuple[str, str], dict[str, Claim]], shown: Sequence[str
 def losses(runs: PaperRuns, _: Path) -> Iterator[str]:
     """Loss factor of each mode and where the power goes."""
     yield "## Loss of each mode, and where the power goes\n"
-    yield "The loss factor of a damped mode ([S2-16](theory-step2.md#S2-16)), split in proportion"
-    yield "to the powers that film and sound take at the peak ([S2-55](theory-loss.md#S2-55)).\n"
+    yield "The loss factor of a damped mode ([S2-16](#S2-16)), split in proportion"
+    yield "to the powers that film and sound take at the peak ([S2-55](#S2-55)).\n"
     for blade in BLADES:
         result = runs.result(f"{blade}-{runs.main}")
         rows = [
@@ -146,7 +146,7 @@ def directions(runs: PaperRuns, pictures: Path) -> Iterator[str]:
     """Tell where the sound goes: degrees of the waves at the peaks, and polar diagrams."""
     yield "## Where the sound goes\n"
     yield "Shares of the outgoing waves in the radiated power at each peak"
-    yield "([S2-9](theory-step2.md#S2-9)). A dipole has the directivity of a figure of eight about"
+    yield "([S2-9](#S2-9)). A dipole has the directivity of a figure of eight about"
     yield "the direction in which the blade pushes the water; a monopole has none.\n"
     kinds = ("Monopole", "Dipole", "Quadrupole", "Higher")
     for blade in BLADES:

@@ -36,8 +36,8 @@ _FILMS = {
 _SHIFT_TEXT = """\
 The load changes shape and stress. `quietblade.study.decomposition.decompose_shift` adds one
 after the other: the deformed shape of blade and water, the geometric stiffness of the stress
-([S2-2](theory-step2.md#S2-2)), the stiffness of the pressure, which turns with the surface, and
-spin softening ([S2-1](theory-step2.md#S2-1)). Modes are matched by MAC. The diamond is the stress
+([S2-2](#S2-2)), the stiffness of the pressure, which turns with the surface, and
+spin softening ([S2-1](#S2-1)). Modes are matched by MAC. The diamond is the stress
 by itself, with its loads, on the shape at rest: where it is not as high as the other steps are
 together, shape and stress do not simply add up.
 """
@@ -114,7 +114,7 @@ def water(runs: PaperRuns, _: Path) -> Iterator[str]:
         yield _absent("tools.paper_beyond")
         return
     yield "On $\\mathcal C_1$ the water mesh of $\\mathcal C_0$ is moved with the blade"
-    yield "([S2-30](theory-step2.md#S2-30)). A mesh that is made anew around the deformed blade"
+    yield "([S2-30](#S2-30)). A mesh that is made anew around the deformed blade"
     yield "(`quietblade.study.water_check.compare_water`), whose cells have nothing in common with"
     yield "the moved ones, gives:\n"
     rows, worst = [], 0.0
