@@ -89,10 +89,6 @@ class OfMotion:
         return {"type": "string", "unit": unit, "examples": [kind.example for kind in kinds]}
 
 
-def _density(kind: units.Kind) -> Any:
-    return Annotated[float, Quantity(kind, above=0.0)]
-
-
 def _pointing(vector: tuple[float, float, float]) -> tuple[float, float, float]:
     if not any(vector):
         raise wrong("points nowhere", "Write for example [0, -1, 0]")
@@ -172,7 +168,7 @@ class PatchWords(ExcitationWords):
         title="Pressure",
         description="Peak amplitude; 1 Pa if neither this nor a density or table is given",
     )
-    density: _density(units.PRESSURE_DENSITY) | None = Field(  # type: ignore[valid-type]
+    density: Annotated[float, Quantity(units.PRESSURE_DENSITY, above=0.0)] | None = Field(
         None, title="Density", description=_DENSITY
     )
     side: Annotated[Side, one_of(Side, "a side of the blade")] = Field(
@@ -193,7 +189,7 @@ class PushWords(ExcitationWords):
     force: Annotated[float, Quantity(units.FORCE, above=0.0)] | None = Field(
         None, title="Force", description="Peak amplitude"
     )
-    density: _density(units.FORCE_DENSITY) | None = Field(  # type: ignore[valid-type]
+    density: Annotated[float, Quantity(units.FORCE_DENSITY, above=0.0)] | None = Field(
         None, title="Density", description=_DENSITY
     )
     direction: Direction = Field(
@@ -216,7 +212,7 @@ class LinePushWords(ExcitationWords):
     force: Annotated[float, Quantity(units.LINE_FORCE, above=0.0)] | None = Field(
         None, title="Force", description="Peak amplitude per length"
     )
-    density: _density(units.LINE_FORCE_DENSITY) | None = Field(  # type: ignore[valid-type]
+    density: Annotated[float, Quantity(units.LINE_FORCE_DENSITY, above=0.0)] | None = Field(
         None, title="Density", description=_DENSITY
     )
     direction: Direction = Field(

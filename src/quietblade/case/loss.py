@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """How a case says the loss of a material: a number, or a table that names its model."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Annotated, Any, Literal, TypeAlias
@@ -12,7 +12,6 @@ from pydantic import (
     GetCoreSchemaHandler,
     GetJsonSchemaHandler,
     TypeAdapter,
-    ValidationInfo,
     model_validator,
 )
 from pydantic.json_schema import JsonSchemaValue
@@ -42,6 +41,14 @@ FILM_LOSS = (
     "Loss factor eta of the complex shear modulus G (1 + i eta), or a table that names a model"
 )
 """Meaning of the key loss_factor of a film's material."""
+
+
+def _read_by(read: Callable[..., Any]) -> CoreSchema:
+    """Make the schema of a value that ``read(value, si=...)`` returns."""
+    return core_schema.with_info_plain_validator_function(
+        lambda value, info: read(value, si=is_si(info)),
+        serialization=core_schema.plain_serializer_function_ser_schema(_plain),
+    )
 
 
 @dataclass(frozen=True)
@@ -82,13 +89,7 @@ class OneOf:
     def __get_pydantic_core_schema__(
         self, source: Any, handler: GetCoreSchemaHandler
     ) -> CoreSchema:
-        def validate(value: Any, info: ValidationInfo) -> Any:
-            return self.read(value, si=is_si(info))
-
-        return core_schema.with_info_plain_validator_function(
-            validate,
-            serialization=core_schema.plain_serializer_function_ser_schema(_plain),
-        )
+        return _read_by(self.read)
 
     def __get_pydantic_json_schema__(
         self, schema: CoreSchema, handler: GetJsonSchemaHandler
@@ -299,13 +300,7 @@ class _Loss:
     def __get_pydantic_core_schema__(
         self, source: Any, handler: GetCoreSchemaHandler
     ) -> CoreSchema:
-        def validate(value: Any, info: ValidationInfo) -> Any:
-            return self.read(value, si=is_si(info))
-
-        return core_schema.with_info_plain_validator_function(
-            validate,
-            serialization=core_schema.plain_serializer_function_ser_schema(_plain),
-        )
+        return _read_by(self.read)
 
     def __get_pydantic_json_schema__(
         self, schema: CoreSchema, handler: GetJsonSchemaHandler

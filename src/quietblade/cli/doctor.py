@@ -1,5 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""``quietblade doctor``: what is installed, which solver serves, how fast, what is missing."""
+"""``quietblade doctor``: what is installed, which solver serves, how fast, what is missing.
+
+Packages are imported where they are tried: help must stay fast, and one that is broken is told.
+"""
+# ruff: noqa: PLC0415
 
 import os
 import platform
@@ -70,7 +74,7 @@ def doctor(
 
 def _machine() -> Iterator[Check]:
     yield Check("quietblade", f"{__version__}, Python {platform.python_version()}", "good")
-    from quietblade.linalg import default_threads  # noqa: PLC0415  # help must stay fast
+    from quietblade.linalg import default_threads
 
     yield Check("threads", f"{default_threads()} of {os.cpu_count()} processors", "good")
     try:
@@ -86,7 +90,7 @@ def _machine() -> Iterator[Check]:
 
 def _packages() -> Iterator[Check]:
     """Check what the installed quietblade says that it needs."""
-    from packaging.requirements import Requirement  # noqa: PLC0415
+    from packaging.requirements import Requirement
 
     for requirement in map(Requirement, metadata.requires("quietblade") or []):
         # what an extra brings is optional
@@ -110,12 +114,12 @@ def _packages() -> Iterator[Check]:
 
 def _solvers() -> Iterator[Check]:
     """Factor and solve one system, complex symmetric like those of a sweep, by each program."""
-    import numpy as np  # noqa: PLC0415
-    from scipy.sparse import csr_matrix, kron  # noqa: PLC0415
+    import numpy as np
+    from scipy.sparse import csr_matrix, kron
 
-    from quietblade.errors import SolverError  # noqa: PLC0415
-    from quietblade.linalg import make_solver  # noqa: PLC0415
-    from quietblade.linalg.chain import SolverName  # noqa: PLC0415
+    from quietblade.errors import SolverError
+    from quietblade.linalg import make_solver
+    from quietblade.linalg.chain import SolverName
 
     second = 2.0 * np.eye(CELLS) - np.eye(CELLS, k=1) - np.eye(CELLS, k=-1)
     line, one = csr_matrix(second), csr_matrix(np.eye(CELLS))
@@ -148,9 +152,9 @@ def _solvers() -> Iterator[Check]:
 def _picture() -> Check:
     """Draw a sphere off screen."""
     try:
-        import pyvista as pv  # noqa: PLC0415
+        import pyvista as pv
 
-        from quietblade.view.render import FROM_ABOVE, Stage  # noqa: PLC0415
+        from quietblade.view.render import FROM_ABOVE, Stage
 
         stage = Stage((64, 64))
         stage.add(pv.Sphere())
@@ -163,8 +167,8 @@ def _picture() -> Check:
 
 
 def _show(title: str, checks: list[Check]) -> None:
-    from rich.table import Table  # noqa: PLC0415
-    from rich.text import Text  # noqa: PLC0415
+    from rich.table import Table
+    from rich.text import Text
 
     style = {"good": "green", "optional": "yellow", "bad": "bold red"}
     word = {"good": "ok", "optional": "optional", "bad": "MISSING"}

@@ -20,6 +20,7 @@ from quietblade.study.frames import SectionFrames
 from quietblade.study.statics import solve_equilibrium
 from quietblade.study.vibration import (
     ABOVE_BAND,
+    SolidMatrices,
     coriolis,
     displacement_field,
     linear_problem,
@@ -129,7 +130,8 @@ def _at_speed(
         raise ConvergenceError("; ".join(str(notice) for notice in state.notices))
     motion = solve_mesh_motion(mesh, state.displacement, case.acoustics.gap)
     field = displacement_field(mesh, motion)
-    _, operators = linear_problem(there, mesh, structure, state.structure, field)
+    solid = SolidMatrices.of(there, structure, state.structure)
+    operators = linear_problem(there, mesh, solid, field)
     modes = wet_modes(
         operators,
         ABOVE_BAND * case.acoustics.band[1],

@@ -26,6 +26,7 @@ from quietblade.propulsion.loads import (
     PressureTable,
     UniformPressure,
 )
+from quietblade.study.columns import read_columns
 from quietblade.typing import FloatArray
 
 if TYPE_CHECKING:
@@ -99,10 +100,7 @@ def read_pressures(file: Path) -> PressureTable:
     LoadError
         The grid does not reach from 0 to 1, or a value is not finite.
     """
-    table = np.genfromtxt(file, delimiter=",", names=True, encoding="utf-8", ndmin=1)
-    names = table.dtype.names or ()
-    if tuple(names) != COLUMNS:
-        raise ValueError(f"the columns are {', '.join(names) or 'unnamed'}")
+    table = read_columns(file, COLUMNS)
     s, xi = np.unique(table["span"]), np.unique(table["chord"])
     order = np.lexsort((table["chord"], table["span"]))
     grid = np.stack(np.meshgrid(s, xi, indexing="ij"), axis=-1).reshape(-1, 2)

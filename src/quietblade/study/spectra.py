@@ -7,6 +7,7 @@ from typing import TypeAlias
 import numpy as np
 
 from quietblade.case import Case, Finding
+from quietblade.study.columns import read_columns
 from quietblade.typing import AnyArray, FloatArray
 
 HARMONIC_COLUMNS = ("frequency", "amplitude", "phase")
@@ -78,11 +79,9 @@ def read_spectrum(file: Path, *, random: bool = False) -> Table:
     OSError
         It cannot be read.
     """
-    table = np.genfromtxt(file, delimiter=",", names=True, encoding="utf-8", ndmin=1)
-    titles = table.dtype.names or ()
     known = (RANDOM_COLUMNS,) if random else (HARMONIC_COLUMNS, HARMONIC_COLUMNS[:2])
-    if tuple(titles) not in known:
-        raise ValueError(f"the columns are {', '.join(titles) or 'unnamed'}")
+    table = read_columns(file, *known)
+    titles = table.dtype.names or ()
     if not all(np.all(np.isfinite(table[title])) for title in titles):
         raise ValueError("an entry is missing or is not a finite number")
     frequency, value = table["frequency"], table[titles[1]]

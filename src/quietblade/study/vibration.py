@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Step 2 of a case: wet modes and sound of the blade about one configuration."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import ngsolve as ngs
@@ -26,6 +27,7 @@ from quietblade.typing import AnyArray, FloatArray, Progress
 from quietblade.vibroacoustics.complex_modes import ComplexModes, complex_modes
 from quietblade.vibroacoustics.fluid import normal_motion_matrix
 from quietblade.vibroacoustics.grid import refined_grid
+from quietblade.vibroacoustics.loss import Lossy
 from quietblade.vibroacoustics.modes import WetModes, wet_modes
 from quietblade.vibroacoustics.multipoles import CLOSED_SURFACE, SurfaceSources
 from quietblade.vibroacoustics.naming import Naming, name_modes
@@ -119,27 +121,46 @@ class Vibration:
     notices: tuple[Notice, ...]
 
 
-def linear_problem(
-    case: Case,
-    mesh: Mesh,
-    structure: Structure,
-    state: StructureState,
-    field: ngs.GridFunction | None,
-    share: Share | None = None,
-) -> tuple[Tangent, Operators]:
-    """Assemble eq. (7) about a state of the structure, on the mesh that is moved to it.
+@dataclass(frozen=True, eq=False)
+class SolidMatrices:
+    """What the structure brings into eq. (7), made once for the system and for a root that moves.
 
-    With a `Share`, only that part of the state counts.
+    Attributes
+    ----------
+    tangent : Tangent
+    stiffness : csr_matrix
+    loss : mapping of str to csr_matrix or Lossy
+        Lossy parts by region.
     """
-    part = share or Share()
-    tangent = compute_tangent(structure, state, shape=part.shape, prestress=part.prestress)
+
+    tangent: Tangent
+    stiffness: csr_matrix
+    loss: Mapping[str, csr_matrix | Lossy]
+
+    @classmethod
+    def of(
+        cls, case: Case, structure: Structure, state: StructureState, share: Share | None = None
+    ) -> "SolidMatrices":
+        """Linearise the structure about a state; with a `Share`, only that part of it counts."""
+        part = share or Share()
+        tangent = compute_tangent(structure, state, shape=part.shape, prestress=part.prestress)
+        pieces = STIFFNESS[case.acoustics.tangent] if part.pieces is None else part.pieces
+        with ngs.TaskManager():
+            loss = losses.loss_parts(case, losses.moduli(case), structure, state, tangent)
+        return cls(tangent, tangent.sum(pieces), loss)
+
+
+def linear_problem(
+    case: Case, mesh: Mesh, solid: SolidMatrices, field: ngs.GridFunction | None
+) -> Operators:
+    """Assemble eq. (7) with the structure's matrices, on the mesh that is moved to its state."""
     on_springs = case.root.support == "elastic"  # then the root face moves in the water too
     with ngs.TaskManager():
-        operators = build_operators(
+        return build_operators(
             mesh.fem,
-            stiffness=_stiffness(case, tangent, share),
-            loss=losses.loss_parts(case, losses.moduli(case), structure, state, tangent),
-            mass=tangent.mass,
+            stiffness=solid.stiffness,
+            loss=solid.loss,
+            mass=solid.tangent.mass,
             water=translate.water(case),
             radius=mesh.radius,
             motion=field,
@@ -147,24 +168,14 @@ def linear_problem(
             wetted=f"{INTERFACE}|{CLAMPED}" if on_springs else INTERFACE,
             condition=translate.radiation(case, mesh, field),
         )
-    return tangent, operators
-
-
-def _stiffness(case: Case, tangent: Tangent, share: Share | None) -> csr_matrix:
-    if share is None or share.pieces is None:
-        return tangent.sum(STIFFNESS[case.acoustics.tangent])
-    return tangent.sum(share.pieces)
 
 
 def _moving_root(
     case: Case,
     mesh: Mesh,
-    structure: Structure,
-    state: StructureState,
-    tangent: Tangent,
+    solid: SolidMatrices,
     operators: Operators,
     field: ngs.GridFunction | None,
-    share: Share | None,
 ) -> RootedSystem:
     """Let the clamped root of a system move."""
     with ngs.TaskManager():
@@ -172,9 +183,9 @@ def _moving_root(
             operators,
             mesh.fem,
             mesh.basis,
-            stiffness=_stiffness(case, tangent, share),
-            mass=tangent.mass,
-            loss=losses.loss_parts(case, losses.moduli(case), structure, state, tangent),
+            stiffness=solid.stiffness,
+            mass=solid.tangent.mass,
+            loss=solid.loss,
             water=translate.water(case),
             about=root_centre(mesh),
             motion=field,
@@ -205,10 +216,11 @@ def solve_vibration(
     positions = mesh.nodes if motion is None else mesh.nodes + motion.displacement
     bent = None if motion is None else statics.state.coupled.sections
     frames = SectionFrames.of(blade, mesh, bent)
-    tangent, operators = linear_problem(case, mesh, structure, state, field, share)
+    solid = SolidMatrices.of(case, structure, state, share)
+    operators = linear_problem(case, mesh, solid, field)
     root = None
     if needs_root(case):
-        root = _moving_root(case, mesh, structure, state, tangent, operators, field, share)
+        root = _moving_root(case, mesh, solid, operators, field)
         operators = root.operators
     slow: tuple[Notice, ...] = ()
     if case.acoustics.flow_damping:
@@ -266,7 +278,7 @@ def solve_vibration(
         sweep=sweep.without_factor() if sweep else None,
         solver=exact.report(),
         notices=(
-            *tangent.notices,
+            *solid.tangent.notices,
             *slow,
             *modes.notices,
             *damped.notices,
