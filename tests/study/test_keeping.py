@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Kept results: whole or not there, made again where they are damaged, harmless to read."""
 
+import gc
 import os
 import subprocess
 import sys
+import weakref
+from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from types import MappingProxyType
 
@@ -20,6 +23,7 @@ from quietblade.results.lock import locked
 from quietblade.study.clock import Stages
 from quietblade.study.keeping import DamagedError, Lap, StageStore
 from quietblade.study.stages import Origin
+from quietblade.typing import FloatArray
 
 ORIGIN = Origin({"mesh.size": 0.1, "acoustics.band": [100.0, 200.0]}, {}, {"quietblade": "1"})
 LAP = Lap(1.5, 2e8)
@@ -112,6 +116,24 @@ def test_stages_are_kept_and_forced(tmp_path: Path) -> None:
     assert made(False) == (1, True)
 
 
+def test_a_shelved_result_is_let_go_of_and_read_when_it_is_asked_for(tmp_path: Path) -> None:
+    def shelf(store: StageStore | None) -> tuple[Callable[[], FloatArray], weakref.ref[FloatArray]]:
+        made = np.full(100, 2.0)
+        reference = weakref.ref(made)
+        stages = Stages(lambda *_: None, {"mesh": ORIGIN}, store)
+        return stages.shelve("mesh", partial(lambda array, _: array, made)), reference
+
+    take, made = shelf(StageStore(tmp_path))
+    gc.collect()
+    assert made() is None
+    assert np.all(take() == 2.0)
+    next(tmp_path.glob("*.pickle")).write_bytes(b"")
+    with pytest.raises(ResultError, match="stage mesh: .* damaged: .*; run again"):
+        take()
+    take, made = shelf(None)
+    assert take() is made()
+
+
 def test_full_disk_ends_no_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def full(*_: object) -> None:
         raise OSError(28, "No space left on device")
@@ -121,6 +143,7 @@ def test_full_disk_ends_no_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) 
     stages = Stages(lambda *_: None, {"mesh": ORIGIN}, store)
     assert stages.make("mesh", lambda _: 1) == 1
     assert "No space left" in stages.notices[0].message
+    assert stages.shelve("mesh", lambda _: 2)() == 2  # from memory
     assert store.known("mesh") is None
     assert list(tmp_path.iterdir()) == []
 

@@ -7,6 +7,7 @@ from time import perf_counter
 from typing import TypeVar, cast
 
 from quietblade.errors import Notice
+from quietblade.results.files import ResultError
 from quietblade.study.keeping import DamagedError, Lap, Makers, StageStore
 from quietblade.study.stages import Origin
 from quietblade.typing import Progress
@@ -124,6 +125,31 @@ class Stages(Clock):
                 remedy = "Make room on the disk, or run with --no-keep"
                 self.notices.append(Notice(f"stage {name}", fault, remedy=remedy))
         return result
+
+
+    def shelve(
+        self, name: str, compute: Callable[[Progress], Made], makers: Makers = _NOTHING
+    ) -> Callable[[], Made]:
+        """Make the result of a stage, and let go of it until it is asked for.
+
+        Takes what `make` takes; what is returned reads the result from the disk. A result that
+        is not kept there stays in memory.
+        """
+        made = self.make(name, compute, makers)
+        store, kept = self._store, None if self._store is None else self._store.known(name)
+        if store is None or kept is None or kept.origin != self._origins[name]:
+            return lambda: made
+
+        def read() -> Made:
+            try:
+                return cast(Made, store.read(name, makers))
+            except DamagedError as damage:
+                raise ResultError(
+                    f"stage {name}: what the run had kept of it is damaged: {damage}; "
+                    "run again, which computes it anew"
+                ) from damage
+
+        return read
 
 
 def within(progress: Progress, low: float, high: float) -> Progress:

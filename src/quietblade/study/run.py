@@ -117,12 +117,14 @@ def _run(case: Case, facts: Preflight, folder: RunFolder, stages: Stages) -> Res
         name: _motion(case, mesh, statics, stages) if name == "C1" else None
         for name in case.acoustics.configurations
     }
-    vibrations = {
-        name: stages.make(
+    # the matrices of one configuration are not in memory while another's are factorised
+    shelf = {
+        name: stages.shelve(
             f"modes {name}", partial(solve_vibration, case, blade, mesh, statics, motion), parts
         )
         for name, motion in motions.items()
     }
+    vibrations = {name: take() for name, take in shelf.items()}
     grid = frequencies(case, list(vibrations.values()))
     sounds = {
         name: stages.make(f"sweep {name}", partial(solve_sound, case, vibration, grid), parts)

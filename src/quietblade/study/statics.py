@@ -181,8 +181,9 @@ def solve_statics(case: Case, blade: Blade, mesh: Mesh, progress: Progress) -> S
         shear = compute_film_shear(structure, state.structure, axes["film"])
     plies = solids.blade_plies(case, blade, mesh.basis)
     stress = compute_stress(structure, state.structure, axes=axes, plies=plies)
-    structure.forget()  # its factor is not needed in step 2
     # without a chained computation its rows hold what `outcome` replaces by nan
     chained = state.coupled if state.chained_flow is None else state.chained_flow
     viscous = tuple(viscous_flow(case, flow) for flow in (state.rigid, chained, state.coupled))
-    return Statics(structure, state, loads, shear, stress, viscous, solver.report())
+    # a new structure, since this one keeps the matrices of Newton's method
+    step2 = build_structure(case, blade, mesh, newton_solver())
+    return Statics(step2, state, loads, shear, stress, viscous, solver.report())

@@ -192,6 +192,33 @@ def _moving_root(
         )
 
 
+def _system(
+    case: Case,
+    mesh: Mesh,
+    structure: Structure,
+    state: StructureState,
+    field: ngs.GridFunction | None,
+    share: Share | None,
+) -> tuple[Operators, RootedSystem | None, tuple[Notice, ...]]:
+    """Matrices of eq. (7), with the root if it moves; the pieces of the tangent are gone then."""
+    solid = SolidMatrices.of(case, structure, state, share)
+    operators = linear_problem(case, mesh, solid, field)
+    if not needs_root(case):
+        return operators, None, solid.tangent.notices
+    root = _moving_root(case, mesh, solid, operators, field)
+    return root.operators, root, solid.tangent.notices
+
+
+def _modes(case: Case, operators: Operators, progress: Progress) -> tuple[WetModes, SolverReport]:
+    """Wet modes of the band and somewhat above; the solver is gone then."""
+    solver = symmetric_solver(case, precision="double")
+    low, high = case.acoustics.band
+    modes = wet_modes(
+        operators, ABOVE_BAND * high, moduli_at=0.5 * (low + high), solver=solver, progress=progress
+    )
+    return modes, solver.report()
+
+
 def solve_vibration(
     case: Case,
     blade: Blade,
@@ -216,12 +243,7 @@ def solve_vibration(
     positions = mesh.nodes if motion is None else mesh.nodes + motion.displacement
     bent = None if motion is None else statics.state.coupled.sections
     frames = SectionFrames.of(blade, mesh, bent)
-    solid = SolidMatrices.of(case, structure, state, share)
-    operators = linear_problem(case, mesh, solid, field)
-    root = None
-    if needs_root(case):
-        root = _moving_root(case, mesh, solid, operators, field)
-        operators = root.operators
+    operators, root, noticed = _system(case, mesh, structure, state, field, share)
     slow: tuple[Notice, ...] = ()
     if case.acoustics.flow_damping:
         flow = statics.state.rigid if motion is None else statics.state.coupled
@@ -233,11 +255,8 @@ def solve_vibration(
         sources = SurfaceSources.of(mesh.fem, mesh.basis, operators, motion=field, carried=carried)
         normal_motion = normal_motion_matrix(mesh.fem, CLOSED_SURFACE, field)
     progress(name, 0.2, "matrices assembled")
-    exact = symmetric_solver(case, precision="double")
     low, high = case.acoustics.band
-    modes = wet_modes(
-        operators, ABOVE_BAND * high, moduli_at=0.5 * (low + high), solver=exact, progress=progress
-    )
+    modes, solver = _modes(case, operators, progress)
     progress(name, 0.5, f"{len(modes.frequency)} wet modes")
     sweep = None
     if case.acoustics.sweep == "reduced":
@@ -276,9 +295,9 @@ def solve_vibration(
         naming=name_modes(frames.span, frames.chord, shapes, masses),
         damped=damped,
         sweep=sweep.without_factor() if sweep else None,
-        solver=exact.report(),
+        solver=solver,
         notices=(
-            *solid.tangent.notices,
+            *noticed,
             *slow,
             *modes.notices,
             *damped.notices,
