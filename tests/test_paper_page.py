@@ -9,10 +9,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from quietblade.case.study_calibration import Calibration
 from quietblade.mesh import Mesh
 from quietblade.results.store import RunFolder
+from quietblade.study.calibration import Evaluation, Fitted
+from quietblade.study.fitting import write_fitted, write_sensitivities
+from quietblade.study.sensitivity import Effect, Sensitivities
 from tests.results.made_tables import make_decomposition, make_water
 from tests.results.synthetic import make_result, write_synthetic_fields
+from tools.paper_open import WORDS
 from tools.paper_page import write_page
 from tools.paper_runs import PaperRuns
 
@@ -33,7 +38,24 @@ def study(tmp_path_factory: pytest.TempPathFactory, coarse_mesh: Mesh) -> Path:
             folder.save(replace(result, run=replace(result.run, case_text=_text(name))))
         make_decomposition().save(root / "beyond" / blade / "shift.nc")
     make_water().save(root / "beyond" / "composite" / "water.nc")
+    write_calibration(root.parent / "paper-calibration")
     return root
+
+
+def write_calibration(folder: Path) -> None:
+    """Write what a search and sensitivities leave, with made-up figures."""
+    words = Calibration.load(WORDS)
+    moved = {p.key: p.value(p.first) for p in words.parameters if p.search}
+    claim = "paper/composite/film-shear-strain"
+    start = Evaluation(moved, {"composite": {claim: 9.0}})
+    best = Evaluation({**moved, "film.thickness": "1.123 mm"}, {"composite": {claim: 8.0}})
+    off = np.linspace(-0.5, 0.5, len(words.targets))
+    factors = {"composite/film_shear_strain": 1.0456}
+    write_fitted(
+        words, Fitted("", start, best, off, (9.9, 0.4), 31, 31, True, factors, (9.9, 0.4)), folder
+    )
+    effect = Effect("film.thickness", "1.123 mm", 0.3, best)
+    write_sensitivities(words, Sensitivities(start, (effect,)), folder)
 
 
 def _text(name: str) -> str:
@@ -79,6 +101,23 @@ def test_water_that_differs_is_said_to_differ(study: Path, tmp_path: Path) -> No
     text = "\n".join(water(PaperRuns(tmp_path, "ours"), tmp_path))
     assert "The peaks agree to 0.2 %, which is NOT within the 0.1 %" in text
     assert "Not computed yet" in "\n".join(water(PaperRuns(tmp_path / "none", "ours"), tmp_path))
+
+
+def test_page_tells_what_was_fitted_and_what_moves_it(out: Path) -> None:
+    text = (out / "paper.md").read_text()
+    assert "| `film.thickness` | 0.7 mm to 2.2 mm | 1.5 mm | 1.123 mm |" in text
+    assert "31 evaluations; the search ended by itself." in text
+    assert "| composite, `film_shear_strain` | 0.09 | 0.09125 | +0.25 | 1.0456 |" in text
+    assert "-1 by `film.thickness` = 1.123 mm" in text
+    assert "run `quietblade study --calibrate --reading tensor" in text  # there is none of it
+
+
+def test_page_tells_what_a_frequency_step_shows(out: Path) -> None:
+    text = (out / "paper.md").read_text()
+    rows = text.partition("## What the frequency step shows")[2].partition("\n## ")[0]
+    found = re.findall(r"\| B5 \| ([\d.]+) \| [\d.-]+ \(([\d.-]+)\)", rows)
+    assert found
+    assert all(float(true) >= float(worst) for true, worst in found)
 
 
 def test_headline_figures_are_data(out: Path) -> None:

@@ -4,7 +4,8 @@
     python -m tools.paper_page [--study runs/paper] [--out docs]
 
 Reads the runs ``BLADE-VARIANT`` of the study, and beside them in ``beyond`` the tables of
-`tools.paper_beyond` and the runs of ``cases/paper-beyond.toml``.  What is not there is left out of
+`tools.paper_beyond` and the runs of ``cases/paper-beyond.toml``, and in ``../paper-calibration``
+what the calibration found.  What is not there is left out of
 the page, which says so.
 """
 
@@ -18,13 +19,16 @@ from pathlib import Path
 from quietblade.results.claims import BLADES
 from quietblade.results.files import write_text
 from quietblade.view.paper import CAPTIONS, draw_paper_figures
+from tools.paper_open import unstated
 from tools.paper_runs import PaperRuns, headline
-from tools.paper_sections import claims, directions, losses, provenance
+from tools.paper_sections import claims, directions, losses, provenance, steps
 from tools.paper_steps import costs, films, shift, water
 
 ROOT = Path(__file__).resolve().parent.parent
 _DIGITS = 5
-_SECTIONS = (claims, shift, water, losses, directions, costs, films, provenance)
+_SECTIONS = (
+    claims, unstated, steps, shift, water, losses, directions, costs, films, provenance,
+)  # fmt: skip
 
 _HEAD = """# The paper, claim by claim
 

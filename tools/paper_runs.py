@@ -2,6 +2,7 @@
 """Runs and tables of the paper's study, as the page finds them in their folder."""
 
 import json
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -32,6 +33,11 @@ class PaperRuns:
 
     root: Path
     main: str
+
+    @property
+    def calibration(self) -> Path:
+        """Folder of the calibration, beside that of the study."""
+        return self.root.parent / "paper-calibration"
 
     def folder(self, blade: str, variant: str) -> RunFolder:
         """Folder of a run of the study."""
@@ -124,6 +130,11 @@ class ModeFigures:
         Share of the injected power that is radiated at the peak.
     degrees : tuple of float
         Shares of monopole, dipole, quadrupole, ... in the radiated power.
+    losses : mapping of str to float
+        What each lossy part and the radiation have in the loss factor.
+    stepped : mapping of float to (float, float)
+        Levels [dB re 1 pW] that sweeps in even steps [Hz] show of the peak: from the band's lower
+        end, and most unluckily placed.
     """
 
     name: str
@@ -134,6 +145,8 @@ class ModeFigures:
     width: float
     radiated: float
     degrees: tuple[float, ...]
+    losses: Mapping[str, float]
+    stepped: Mapping[float, tuple[float, float]]
 
 
 def modes_in_band(configuration: ConfigurationResult) -> tuple[ModeFigures, ...]:
@@ -141,8 +154,10 @@ def modes_in_band(configuration: ConfigurationResult) -> tuple[ModeFigures, ...]
     modes, spectrum = configuration.modes, configuration.spectrum
     share = spectrum.power[path("sphere")] / spectrum.injected
     by_degree = spectrum.power_by_degree
+    shares, table = configuration.loss_shares, configuration.stepped
     found = []
     for name, peak in find_peaks(configuration).items():
+        row = int(np.argmin(np.abs(configuration.peaks.frequency - peak.frequency)))
         k = modes.name.index(name)
         nearest = int(np.nanargmin(np.abs(spectrum.frequency - peak.frequency)))
         found.append(
@@ -155,6 +170,14 @@ def modes_in_band(configuration: ConfigurationResult) -> tuple[ModeFigures, ...]
                 peak.width,
                 float(share[nearest]),
                 tuple((by_degree[:, nearest] / by_degree[:, nearest].sum()).tolist()),
+                dict(zip(shares.name, shares.share[k].tolist(), strict=True)),
+                {
+                    float(step): (
+                        float(table.power_level[row, j]),
+                        float(table.worst_level[row, j]),
+                    )
+                    for j, step in enumerate(table.step)
+                },
             )
         )
     return tuple(found)

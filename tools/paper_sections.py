@@ -126,20 +126,37 @@ def _misses(judged: dict[tuple[str, str], dict[str, Claim]], shown: Sequence[str
 def losses(runs: PaperRuns, _: Path) -> Iterator[str]:
     """Loss factor of each mode and where the power goes."""
     yield "## Loss of each mode, and where the power goes\n"
-    yield "The loss factor of a damped mode ([S2-16](#S2-16)), split in proportion"
-    yield "to the powers that film and sound take at the peak ([S2-55](#S2-55)).\n"
+    yield "The loss factor of a damped mode ([S2-16](#S2-16)), and what the lossy materials and the"
+    yield "radiation have in it ([S2-55](#S2-55)).\n"
     for blade in BLADES:
         result = runs.result(f"{blade}-{runs.main}")
+        parts = next(iter(result.configurations.values())).loss_shares.name
         rows = [
             [blade, name, m.name, f"{m.peak:.2f}", f"{m.level:.1f}", f"{m.loss_factor:.1e}",
-             f"{m.loss_factor * (1.0 - m.radiated):.1e}", f"{m.loss_factor * m.radiated:.1e}",
+             *(number(m.losses[part], ".1e") for part in parts),
              number(m.width, ".2g"), percent(m.radiated)]
             for name, configuration in result.configurations.items()
             for m in modes_in_band(configuration)
         ]  # fmt: skip
-        heads = ["Blade", "", "Mode", "Peak [Hz]", "[dB re 1 pW]", "Loss factor", "film", "sound",
+        heads = ["Blade", "", "Mode", "Peak [Hz]", "[dB re 1 pW]", "Loss factor", *parts,
                  "Width [Hz]", "Power that is radiated"]  # fmt: skip
         yield markdown(heads, rows)
+
+
+def steps(runs: PaperRuns, _: Path) -> Iterator[str]:
+    """Tell what sweeps in even steps would have shown of the peaks."""
+    yield "## What the frequency step shows of a peak\n"
+    yield "The peaks are narrower than the steps of a sweep, so that the level it shows is a matter"
+    yield "of where its frequencies lie: in brackets, where they lie most unluckily. All levels are"
+    yield "in dB re 1 pW.\n"
+    rows, at = [], ()
+    for blade in BLADES:
+        for name, configuration in runs.result(f"{blade}-{runs.main}").configurations.items():
+            for m in modes_in_band(configuration):
+                at = tuple(m.stepped)
+                shown = (f"{level:.1f} ({worst:.1f})" for level, worst in m.stepped.values())
+                rows.append([blade, name, m.name, f"{m.level:.1f}", *shown])
+    yield markdown(["Blade", "", "Mode", "True peak", *(f"{step:g} Hz" for step in at)], rows)
 
 
 def directions(runs: PaperRuns, pictures: Path) -> Iterator[str]:

@@ -128,7 +128,7 @@ def test_a_shelved_result_is_let_go_of_and_read_when_it_is_asked_for(tmp_path: P
     assert made() is None
     assert np.all(take() == 2.0)
     next(tmp_path.glob("*.pickle")).write_bytes(b"")
-    with pytest.raises(ResultError, match="stage mesh: .* damaged: .*; run again"):
+    with pytest.raises(ResultError, match=r"stage mesh: .* damaged: .*; run again"):
         take()
     take, made = shelf(None)
     assert take() is made()
