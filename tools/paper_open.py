@@ -10,7 +10,7 @@ from typing import Any
 from quietblade.case.study_calibration import Calibration, TargetWords
 from quietblade.results.claims import BLADES, judge_claims
 from tools.paper_runs import PaperRuns
-from tools.paper_sections import markdown
+from tools.paper_sections import changed, markdown, verdict
 
 WORDS = Path(__file__).resolve().parent.parent / "cases" / "paper-calibration.toml"
 _TOLD = 3
@@ -27,6 +27,7 @@ def unstated(runs: PaperRuns, _: Path) -> Iterator[str]:
     yield "[How these were searched, and from which bounds](calibration.md); the files are"
     yield "those of `quietblade study --calibrate cases/paper-calibration.toml`, and of the same"
     yield "with `--reading tensor` and with `--sensitivities`.\n"
+    yield from _aligned(runs)
     words = Calibration.load(WORDS)
     for reading, text in _READINGS.items():
         stem = f"calibration-{reading}" if reading else "calibration"
@@ -45,6 +46,28 @@ def unstated(runs: PaperRuns, _: Path) -> Iterator[str]:
     else:
         yield "Not computed yet: run `quietblade study --sensitivities"
         yield "cases/paper-calibration.toml`.\n"
+
+
+def _aligned(runs: PaperRuns) -> Iterator[str]:
+    """Tell what the alignment does to lift and blade angle, which fixed it beforehand."""
+    yield "### Alignment, by lift and blade angle\n"
+    aligned = PaperRuns(runs.root.parent / "paper-alignment", "")
+    names = aligned.names()
+    if not names:
+        yield "Not computed yet: run `quietblade study cases/paper-alignment.toml`.\n"
+        return
+    yield "The chord fraction on a straight line, fixed before the search by the equilibrium of"
+    yield "both blades on a coarse mesh ([what the paper leaves open](calibration.md)).\n"
+    rows = []
+    for name in names:
+        result = aligned.result(name)
+        judged = {claim.id.rpartition("/")[2]: claim for claim in judge_claims(result)}
+        rows.append(
+            [name.partition("-")[0], changed(result, "blade.alignment")]
+            + [verdict(judged[end]) for end in ("lift-coefficient", "blade-angle")]
+        )
+    heads = ["Blade", "Chord fraction", "Lift against the rigid blade", "Blade angle"]
+    yield markdown(heads, rows)
 
 
 def _fitted(words: Calibration, found: dict[str, Any]) -> Iterator[str]:

@@ -64,7 +64,7 @@ def claims(runs: PaperRuns, _: Path) -> Iterator[str]:
             [
                 claim.statement,
                 claim.paper,
-                *(_verdict(judged[blade, v].get(claim.id)) for v in shown),
+                *(verdict(judged[blade, v].get(claim.id)) for v in shown),
                 number(runs.uncertainty.get((blade, claim.id), np.nan), ".2g"),
                 claim.criterion,
             ]
@@ -74,7 +74,8 @@ def claims(runs: PaperRuns, _: Path) -> Iterator[str]:
     yield from _misses(judged, shown)
 
 
-def _verdict(claim: Claim | None) -> str:
+def verdict(claim: Claim | None) -> str:
+    """Tell what was computed, and whether it agrees."""
     if claim is None or claim.agrees is None:
         return "–"
     return f"{'✓' if claim.agrees else '✗'} {claim.computed}"
@@ -97,6 +98,11 @@ def _choices(runs: PaperRuns, shown: Sequence[str]) -> str:
         )
     heads = ["Variant", "Flow", "Condition on the sphere", "Changed in the case file"]
     return markdown(heads, rows)
+
+
+def changed(result: Result, key: str) -> str:
+    """Value that a run gave to a key of its case file; a dash if it did not."""
+    return dict(_CHANGED.findall(result.run.case_text)).get(key, "–")
 
 
 def changes_of(result: Result) -> str:
