@@ -11,6 +11,8 @@ from pathlib import Path
 import pytest
 
 from quietblade.case.presets import PRESETS, preset_text
+from quietblade.case.schema import case_schema
+from quietblade.case.versions import FORMAT
 from quietblade.cli.common import ExitCode, show_error
 from quietblade.cli.main import COMMANDS, execute
 from quietblade.errors import CaseError, ConvergenceError, MeshError
@@ -101,6 +103,36 @@ def test_new_with_an_unknown_preset(capsys: pytest.CaptureFixture[str]) -> None:
     assert execute(["new", "mine", "--preset", "paper-aluminum"]) == ExitCode.CASE_WRONG
     assert 'Did you mean "paper-aluminium"?' in capsys.readouterr().err
     assert not Path("mine.toml").exists()
+
+
+def test_new_with_the_schema_for_editors(capsys: pytest.CaptureFixture[str]) -> None:
+    assert execute(["new", "blades/mine", "--schema"]) == ExitCode.DONE
+    text = Path("blades/mine.toml").read_text(encoding="utf-8")
+    first, rest = text.split("\n", 1)
+    assert first == "#:schema ./quietblade.schema.json"
+    assert rest == preset_text("paper-aluminium")
+    written = json.loads(Path("blades/quietblade.schema.json").read_text(encoding="utf-8"))
+    assert written == case_schema()
+    assert execute(["check", "blades/mine.toml"]) == ExitCode.DONE
+    capsys.readouterr()
+    assert execute(["new", "--schema"]) == ExitCode.DONE
+    assert "quietblade.schema.json" in capsys.readouterr().out
+    assert [path.name for path in Path().glob("*.*")] == ["quietblade.schema.json"]
+
+
+def test_check_rewrites_an_older_file(capsys: pytest.CaptureFixture[str]) -> None:
+    text = preset_text("twisted")
+    older = "".join(row for row in text.splitlines(True) if not row.startswith("format"))
+    Path("mine.toml").write_text(older, encoding="utf-8")
+    assert execute(["check", "mine.toml"]) == ExitCode.DONE
+    assert Path("mine.toml").read_text(encoding="utf-8") == older
+    assert execute(["check", "--migrate", "mine.toml"]) == ExitCode.DONE
+    new = Path("mine.toml").read_text(encoding="utf-8")
+    assert new == older.replace("title = ", f"format = {FORMAT}\ntitle = ")
+    Path("mine.toml").write_text(new.replace(f"format = {FORMAT}", "format = 99"))
+    capsys.readouterr()
+    assert execute(["check", "mine.toml", "--migrate"]) == ExitCode.CASE_WRONG
+    assert "of a newer quietblade" in capsys.readouterr().err
 
 
 def test_presets_are_named_in_the_help(capsys: pytest.CaptureFixture[str]) -> None:

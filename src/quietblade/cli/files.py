@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Files that a user gets beside the results: cases and their schema."""
+
+import json
+from pathlib import Path
+
+from quietblade.errors import CaseError
+from quietblade.results.files import write_text
+
+
+def write_file(path: Path, text: str) -> None:
+    """Write a file as a whole or not at all.
+
+    Raises
+    ------
+    CaseError
+        It cannot be written.
+    """
+    try:
+        write_text(path, text)
+    except (OSError, ValueError) as error:
+        reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
+        raise CaseError(f"{path} cannot be written: {reason}") from error
+
+
+def write_schema(folder: Path) -> Path:
+    """Write the JSON schema of case files into a folder, and return its path."""
+    from quietblade.case.schema import SCHEMA_FILE, case_schema  # noqa: PLC0415  # heavy
+
+    path = folder / SCHEMA_FILE
+    write_file(path, json.dumps(case_schema(), indent=2, ensure_ascii=False) + "\n")
+    return path
