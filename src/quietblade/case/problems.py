@@ -86,19 +86,20 @@ def _is_bare(key: str) -> bool:
 
 def shown(value: Any) -> str:
     """Write a value as it stands in a case file, shortened to fit on a line."""
-    text = _literal(value)
+    text = literal(value)
     return text if len(text) <= _LONGEST_VALUE else text[: _LONGEST_VALUE - 4] + " ..."
 
 
-def _literal(value: Any) -> str:
+def literal(value: Any) -> str:
+    """Write a value as TOML."""
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, str):
-        return json.dumps(value, ensure_ascii=False)
+        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
     if isinstance(value, list | tuple):
-        return "[" + ", ".join(map(_literal, value)) + "]"
+        return "[" + ", ".join(map(literal, value)) + "]"
     if isinstance(value, dict):
-        return "{ " + ", ".join(f"{dotted((k,))} = {_literal(v)}" for k, v in value.items()) + " }"
+        return "{ " + ", ".join(f"{dotted((k,))} = {literal(v)}" for k, v in value.items()) + " }"
     return str(value)
 
 

@@ -8,6 +8,22 @@ from quietblade.errors import CaseError
 from quietblade.results.files import write_text
 
 
+def case_path(name: str, *, force: bool) -> Path:
+    """Path of the file that a case of this name gets.
+
+    Raises
+    ------
+    CaseError
+        The name is none, or the file is there and may not be replaced.
+    """
+    path = Path(name if name.endswith(".toml") else f"{name}.toml")
+    if not name.strip() or path.name == ".toml":
+        raise CaseError(f'"{name}" is no name of a file. Write for example my-blade')
+    if path.exists() and not force:
+        raise CaseError(f"{path} exists already. Choose another name, or replace it with --force")
+    return path
+
+
 def write_file(path: Path, text: str) -> None:
     """Write a file as a whole or not at all.
 

@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """``quietblade new``: write a case file to start from."""
 
+import sys
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from quietblade.cli.common import console
-from quietblade.cli.files import write_file, write_schema
+from quietblade.cli.files import case_path, write_file, write_schema
 from quietblade.errors import CaseError
 
 
@@ -19,6 +20,9 @@ def new(
         str | None,
         typer.Option(help="paper-aluminium (the default), paper-composite, hydrofoil or twisted."),
     ] = None,
+    ask: Annotated[
+        bool, typer.Option("--ask", help="Ask for the main values; so does no NAME at a terminal.")
+    ] = False,
     schema: Annotated[
         bool,
         typer.Option(
@@ -33,32 +37,22 @@ def new(
     from quietblade.case.presets import PRESETS, preset_text  # noqa: PLC0415  # as in check
     from quietblade.case.schema import DIRECTIVE  # noqa: PLC0415
 
-    if schema and name is None:
+    if schema and name is None and not ask:
         console.print(f"{write_schema(Path())}: schema of case files", markup=False)
         return
-    if name is None:
-        raise CaseError("new needs the NAME of a case to write")
-    chosen = preset or next(iter(PRESETS))
-    about, text = PRESETS.get(chosen, ""), preset_text(chosen)
-    path = target(name, force=force)
+    if ask or (name is None and sys.stdin.isatty()):
+        from quietblade.cli.questions import ask_case  # noqa: PLC0415
+
+        path, text = ask_case(name, preset, force=force)
+        about = "from your answers"
+    elif name is None:
+        raise CaseError("new needs the NAME of a case to write, or --ask to be asked for it")
+    else:
+        preset = preset or next(iter(PRESETS))
+        text, path = preset_text(preset), case_path(name, force=force)
+        about = PRESETS[preset]
     write_file(path, (DIRECTIVE if schema else "") + text)
     if schema:
         write_schema(path.parent)
     console.print(f"{path}: {about}", markup=False)
     console.print(f"next: quietblade check {path}", markup=False)
-
-
-def target(name: str, *, force: bool) -> Path:
-    """Path of the file that a case of this name gets.
-
-    Raises
-    ------
-    CaseError
-        The name is none, or the file is there and may not be replaced.
-    """
-    path = Path(name if name.endswith(".toml") else f"{name}.toml")
-    if not name.strip() or path.name == ".toml":
-        raise CaseError(f'"{name}" is no name of a file. Write for example my-blade')
-    if path.exists() and not force:
-        raise CaseError(f"{path} exists already. Choose another name, or replace it with --force")
-    return path
