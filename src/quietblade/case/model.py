@@ -44,7 +44,9 @@ class Case(Words):
     """A study of one blade. Made by `load`, `parse` or `from_plain`; all values in SI units."""
 
     format: Annotated[Count, between(1, FORMAT)] = Field(
-        FORMAT, title="Format", description="Format of the file; the newest if not given"
+        FORMAT,
+        title="Format",
+        description="Format of the file, for later versions; the first if not given",
     )
     title: Text = Field("", title="Title", description="One line for people")
     blade: BladeWords = Field(title="Blade", description="Shape and material of the blade")
