@@ -135,6 +135,34 @@ def test_check_rewrites_an_older_file(capsys: pytest.CaptureFixture[str]) -> Non
     assert "of a newer quietblade" in capsys.readouterr().err
 
 
+def test_migration_leaves_alone_what_is_not_a_case(capsys: pytest.CaptureFixture[str]) -> None:
+    text = 'title = "mine"\n'
+    Path("mine.toml").write_text(text)
+    assert execute(["check", "--migrate", "mine.toml"]) == ExitCode.CASE_WRONG
+    assert "mine.toml: mesh: this table is missing" in capsys.readouterr().err
+    assert Path("mine.toml").read_text() == text
+    Path("link.toml").symlink_to("blade.toml")
+    Path("blade.toml").write_text(preset_text("twisted").replace("format = 1", "# none"))
+    assert execute(["check", "--migrate", "link.toml"]) == ExitCode.DONE
+    assert Path("link.toml").is_symlink()
+    assert f"\nformat = {FORMAT}\n" in Path("blade.toml").read_text(encoding="utf-8")
+
+
+def test_only_files_are_replaced(capsys: pytest.CaptureFixture[str]) -> None:
+    os.mkfifo("pipe.toml")
+    assert execute(["new", "pipe", "--force"]) == ExitCode.CASE_WRONG
+    assert "pipe.toml is not a file that could be replaced" in capsys.readouterr().err
+    assert Path("pipe.toml").is_fifo()
+
+
+def test_what_the_system_refuses_is_told_in_a_line(capsys: pytest.CaptureFixture[str]) -> None:
+    for arguments in (["new", "a" * 300], ["show", "a" * 300], ["report", "a" * 300]):
+        assert execute(arguments) in (ExitCode.CASE_WRONG, ExitCode.FAILED)
+        (row,) = capsys.readouterr().err.splitlines()
+        assert row.startswith("error aaa")
+        assert row.endswith("File name too long")
+
+
 def test_presets_are_named_in_the_help(capsys: pytest.CaptureFixture[str]) -> None:
     assert execute(["new", "--help"]) == ExitCode.DONE
     shown = capsys.readouterr().out

@@ -46,10 +46,12 @@ def check(
 
 
 def _migrate(path: Path) -> None:
+    from quietblade.case import Case  # noqa: PLC0415
     from quietblade.case.source import read_source  # noqa: PLC0415
     from quietblade.case.versions import migrated_text  # noqa: PLC0415
 
     old = read_source(path).text
     new = migrated_text(old, str(path))
+    Case.parse(new, str(path))  # what is not a case is left as it is
     if new != old:
-        write_file(path, new)
+        write_file(path.resolve(), new)

@@ -5,7 +5,7 @@ import json
 from pathlib import Path
 
 from quietblade.errors import CaseError
-from quietblade.results.files import write_text
+from quietblade.results.files import ResultError, write_text
 
 
 def case_path(name: str, *, force: bool) -> Path:
@@ -34,6 +34,8 @@ def write_file(path: Path, text: str) -> None:
     """
     try:
         write_text(path, text)
+    except ResultError as error:
+        raise CaseError(str(error)) from error
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
         raise CaseError(f"{path} cannot be written: {reason}") from error
