@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Whatever a file says: a case, or an error of the case with messages; never anything else."""
 
+import re
 import tomllib
 from collections.abc import Iterator
 from math import inf, nan
@@ -68,6 +69,7 @@ ODD = (
     {"formula": "1e300*s", "unit": "m"}, {"formula": "sin(1e9*s)"}, "rubber", "lay-up", "file:.",
     "file:no.dat", "momentum", "lifting-line", "random", "elastic", "boundary-layer",
 )  # fmt: skip
+QUANTITY = re.compile(r"-?[0-9]+(\.[0-9]+)?(e-?[0-9]+)? \S+")
 TOKENS = (
     '"', "'", '"""', "[", "]", "[[", "{", "}", "=", ".", ",", "#", "\n", "0", "-1", "1e400", "nan",
     "inf", "true", "1979-05-27", "[1]", "{}", '""', '"0 m"', '"-1 m"', '"1e30 m"', '"5 kg"', '"%"',
@@ -172,11 +174,11 @@ def with_odd_values(draw: st.DrawFn) -> str:
         value = draw(st.one_of(st.sampled_from(ODD), st.floats(), st.integers(), st.text()))
         scale = draw(st.sampled_from([None, -1.0, 0.0, 1e-3, 0.1, 0.5, 2.0, 10.0, 1e3]))
         match table[last]:
-            case str(text) if scale is not None and " " in text and text[0].isdigit():
+            case str(text) if scale is not None and QUANTITY.fullmatch(text):
                 number, unit = text.split(" ", 1)
                 table[last] = f"{float(number) * scale:g} {unit}"
-            case int() | float() if scale is not None:
-                table[last] *= scale
+            case float(number) if scale is not None:
+                table[last] = number * scale
             case _ if scale == -1.0:
                 del table[last]
             case _:
