@@ -122,11 +122,16 @@ def kind(title: str, model: type[Words]) -> str:
 
 def keys() -> Iterator[str]:
     """Sections of all tables, in the order of the case."""
-    plain = [key for key, field in Case.model_fields.items() if field.annotation is str]
+    plain = [key for key, field in Case.model_fields.items() if field.annotation in (str, int)]
+    at_top = Case.model_json_schema()["properties"]
     yield "### At the top\n\n" + "\n".join(
         [
             *HEAD,
-            *(f"| `{key}` | {Case.model_fields[key].description} | text | - |" for key in plain),
+            *(
+                f"| `{key}` | {said.description} | {TYPES[kind]} | {default(said.default)} |"
+                for key in plain
+                for said, kind in [(Case.model_fields[key], at_top[key]["type"])]
+            ),
         ]
     )
     for name, field in Case.model_fields.items():

@@ -18,7 +18,7 @@ from quietblade.mesh.nodal import NodalBasis
 from quietblade.typing import ComplexArray, FloatArray
 from quietblade.vibroacoustics.fluid import Water
 from quietblade.vibroacoustics.multipoles import SurfaceSources
-from quietblade.vibroacoustics.operators import Operators, build_operators, product_space
+from quietblade.vibroacoustics.operators import CLAMPED, Operators, build_operators, product_space
 from quietblade.vibroacoustics.radiation import Bgt1, RadiationCondition
 
 WATER = Water(density=1000.0, sound_speed=1500.0)
@@ -132,6 +132,7 @@ class SphereModel:
             water=self.water,
             radius=self.outer,
             condition=self.condition,
+            clamped=CLAMPED if CLAMPED in self.fem.GetBoundaries() else None,
         )
 
     @cached_property

@@ -11,6 +11,8 @@ from pathlib import Path
 import pytest
 
 from quietblade.case.presets import PRESETS, preset_text
+from quietblade.case.schema import case_schema
+from quietblade.case.versions import FORMAT
 from quietblade.cli.common import ExitCode, show_error
 from quietblade.cli.main import COMMANDS, execute
 from quietblade.errors import CaseError, ConvergenceError, MeshError
@@ -101,6 +103,64 @@ def test_new_with_an_unknown_preset(capsys: pytest.CaptureFixture[str]) -> None:
     assert execute(["new", "mine", "--preset", "paper-aluminum"]) == ExitCode.CASE_WRONG
     assert 'Did you mean "paper-aluminium"?' in capsys.readouterr().err
     assert not Path("mine.toml").exists()
+
+
+def test_new_with_the_schema_for_editors(capsys: pytest.CaptureFixture[str]) -> None:
+    assert execute(["new", "blades/mine", "--schema"]) == ExitCode.DONE
+    text = Path("blades/mine.toml").read_text(encoding="utf-8")
+    first, rest = text.split("\n", 1)
+    assert first == "#:schema ./quietblade.schema.json"
+    assert rest == preset_text("paper-aluminium")
+    written = json.loads(Path("blades/quietblade.schema.json").read_text(encoding="utf-8"))
+    assert written == case_schema()
+    assert execute(["check", "blades/mine.toml"]) == ExitCode.DONE
+    capsys.readouterr()
+    assert execute(["new", "--schema"]) == ExitCode.DONE
+    assert "quietblade.schema.json" in capsys.readouterr().out
+    assert [path.name for path in Path().glob("*.*")] == ["quietblade.schema.json"]
+
+
+def test_check_rewrites_an_older_file(capsys: pytest.CaptureFixture[str]) -> None:
+    text = preset_text("twisted")
+    older = "".join(row for row in text.splitlines(True) if not row.startswith("format"))
+    Path("mine.toml").write_text(older, encoding="utf-8")
+    assert execute(["check", "mine.toml"]) == ExitCode.DONE
+    assert Path("mine.toml").read_text(encoding="utf-8") == older
+    assert execute(["check", "--migrate", "mine.toml"]) == ExitCode.DONE
+    new = Path("mine.toml").read_text(encoding="utf-8")
+    assert new == older.replace("title = ", f"format = {FORMAT}\ntitle = ")
+    Path("mine.toml").write_text(new.replace(f"format = {FORMAT}", "format = 99"))
+    capsys.readouterr()
+    assert execute(["check", "mine.toml", "--migrate"]) == ExitCode.CASE_WRONG
+    assert "of a newer quietblade" in capsys.readouterr().err
+
+
+def test_migration_leaves_alone_what_is_not_a_case(capsys: pytest.CaptureFixture[str]) -> None:
+    text = 'title = "mine"\n'
+    Path("mine.toml").write_text(text)
+    assert execute(["check", "--migrate", "mine.toml"]) == ExitCode.CASE_WRONG
+    assert "mine.toml: mesh: this table is missing" in capsys.readouterr().err
+    assert Path("mine.toml").read_text() == text
+    Path("link.toml").symlink_to("blade.toml")
+    Path("blade.toml").write_text(preset_text("twisted").replace("format = 1", "# none"))
+    assert execute(["check", "--migrate", "link.toml"]) == ExitCode.DONE
+    assert Path("link.toml").is_symlink()
+    assert f"\nformat = {FORMAT}\n" in Path("blade.toml").read_text(encoding="utf-8")
+
+
+def test_only_files_are_replaced(capsys: pytest.CaptureFixture[str]) -> None:
+    os.mkfifo("pipe.toml")
+    assert execute(["new", "pipe", "--force"]) == ExitCode.CASE_WRONG
+    assert "pipe.toml is not a file that could be replaced" in capsys.readouterr().err
+    assert Path("pipe.toml").is_fifo()
+
+
+def test_what_the_system_refuses_is_told_in_a_line(capsys: pytest.CaptureFixture[str]) -> None:
+    for arguments in (["new", "a" * 300], ["show", "a" * 300], ["report", "a" * 300]):
+        assert execute(arguments) in (ExitCode.CASE_WRONG, ExitCode.FAILED)
+        (row,) = capsys.readouterr().err.splitlines()
+        assert row.startswith("error aaa")
+        assert row.endswith("File name too long")
 
 
 def test_presets_are_named_in_the_help(capsys: pytest.CaptureFixture[str]) -> None:

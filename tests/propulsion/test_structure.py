@@ -214,8 +214,12 @@ def test_wrong_input_is_refused() -> None:
         Structure(mesh, {"blade": FILM, "film": FILM}, wetted=SURFACE)
     with pytest.raises(MeshError, match="region 'rib', which the mesh does not have"):
         Structure(mesh, {"blade": ALUMINIUM, "film": FILM, "rib": ALUMINIUM}, wetted=SURFACE)
+    both = {"blade": ALUMINIUM, "film": FILM}
+    for name in ("hub", "hub|root", "root|hub"):  # a name among others would hold nothing
+        with pytest.raises(MeshError, match="no boundary of the mesh matches 'hub'"):
+            Structure(mesh, both, clamped=name, wetted=SURFACE)
     with pytest.raises(MeshError, match="no boundary of the mesh matches 'hub'"):
-        Structure(mesh, {"blade": ALUMINIUM, "film": FILM}, clamped="hub", wetted=SURFACE)
+        Structure(mesh, both, guided={"x": "root|hub"}, wetted=SURFACE)
     with pytest.raises(ValueError, match="pressure has to be"):
         plate().solve(np.zeros(3))
     with pytest.raises(ValueError, match="dead_load has to be"):

@@ -185,7 +185,13 @@ def test_moved_sphere_radiates_as_the_one_at_rest() -> None:
     stiffness, mass = linear_elastic(rest.fem, SOFT, "blade")
     moved = replace(rest)
     moved.__dict__["operators"] = build_operators(
-        rest.fem, stiffness=stiffness, mass=mass, water=WATER, radius=1.0, motion=motion
+        rest.fem,
+        stiffness=stiffness,
+        mass=mass,
+        water=WATER,
+        radius=1.0,
+        clamped=None,
+        motion=motion,
     )
     sources = SurfaceSources.of(moved.fem, moved.basis, moved.operators, motion=motion)
     np.testing.assert_allclose(sources.center, [0.0, 0.0, 0.15], atol=1e-3)

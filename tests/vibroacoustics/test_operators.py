@@ -13,12 +13,12 @@ from scipy.sparse import csr_matrix
 
 from quietblade.errors import MeshError
 from quietblade.mesh import Mesh
+from quietblade.mesh.boundaries import boundary
 from quietblade.mesh.nodal import NodalBasis
 from quietblade.typing import FloatArray
 from quietblade.vibroacoustics.excitation import pressure_force
 from quietblade.vibroacoustics.fluid import (
     Water,
-    boundary,
     compressibility_matrix,
     coupling_matrix,
     fluid_normal,
@@ -239,11 +239,15 @@ def test_what_build_operators_refuses() -> None:
     stiffness, mass = linear_elastic(fem, SOFT, "blade")
 
     def build(**changes: object) -> None:
-        arguments = {"stiffness": stiffness, "mass": mass, "water": WATER, "radius": 1.0}
+        free = {"clamped": None}  # a ball
+        arguments = {"stiffness": stiffness, "mass": mass, "water": WATER, "radius": 1.0} | free
         build_operators(fem, **(arguments | changes))  # type: ignore[arg-type]
 
     with pytest.raises(MeshError, match=r"not a sphere of radius 1\.3"):
         build(radius=1.3)
+    for name in ("root", "outer|root"):
+        with pytest.raises(MeshError, match="no boundary of the mesh matches 'root'"):
+            build(clamped=name)
     with pytest.raises(MeshError, match="matches 'hull'"):
         build(outer="hull")
     with pytest.raises(ValueError, match="'K' has shape"):
@@ -262,4 +266,4 @@ def test_mesh_without_water_is_refused() -> None:
     box = occ.Box(occ.Pnt(0, 0, 0), occ.Pnt(1, 1, 1)).mat("blade")
     fem = ngs.Mesh(occ.OCCGeometry(box).GenerateMesh(maxh=1.0))
     with pytest.raises(MeshError, match="no free unknown in the material 'water'"):
-        free_unknowns(fem)
+        free_unknowns(fem, clamped=None)

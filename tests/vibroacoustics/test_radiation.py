@@ -74,7 +74,13 @@ def test_another_condition_finds_its_place() -> None:
     model = ball()
     stiffness, mass = linear_elastic(model.fem, SOFT, "blade")
     operators = build_operators(
-        model.fem, stiffness=stiffness, mass=mass, water=WATER, radius=1.0, condition=Bgt2()
+        model.fem,
+        stiffness=stiffness,
+        mass=mass,
+        water=WATER,
+        radius=1.0,
+        clamped=None,
+        condition=Bgt2(),
     )
     other = replace(model)
     other.__dict__["operators"] = operators

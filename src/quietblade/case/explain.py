@@ -96,7 +96,7 @@ def _in_file(loc: tuple[int | str, ...]) -> Path:
 
 def _missing(path: Path, data: Mapping[str, Any], root: Model) -> Finding:
     *table, key = path
-    model = _model_at(tuple(table), data, root)
+    model = model_at(tuple(table), data, root)
     info = model.model_fields[str(key)] if model else None
     if info is None:
         return Finding(path, "is missing", f"Add {key}")
@@ -118,7 +118,7 @@ def _example(key: str, info: FieldInfo) -> str:
 
 def _unknown(path: Path, data: Mapping[str, Any], root: Model) -> Finding:
     *table, key = path
-    model = _model_at(tuple(table), data, root)
+    model = model_at(tuple(table), data, root)
     known = list(model.model_fields) if model else []
     near = suggestion(str(key), known)
     if near:
@@ -133,7 +133,7 @@ def _unknown(path: Path, data: Mapping[str, Any], root: Model) -> Finding:
     return Finding(path, "unknown key", f"Known here: {', '.join(known)}")
 
 
-def _model_at(path: Path, data: Mapping[str, Any], root: Model) -> Model | None:
+def model_at(path: Path, data: Mapping[str, Any], root: Model) -> Model | None:
     """Model of the table at a path; None where there is no table."""
     choice = _CHOICES.get(str(path[0])) if path else None
     if choice is not None:

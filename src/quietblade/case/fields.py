@@ -19,7 +19,7 @@ from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from quietblade.case import units
 from quietblade.case.problems import Path, suggestion
-from quietblade.case.units import Kind, UnitError, read_quantity
+from quietblade.case.units import WRITTEN_QUANTITY, Kind, UnitError, read_quantity
 
 CASE_PROBLEM = "case_problem"
 """Type of the validation errors that carry their own message, remedy and place."""
@@ -29,6 +29,15 @@ class Words(BaseModel):
     """A table of the case file: frozen, and unknown keys are errors."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+
+TABLES = "tables"
+"""Key of a JSON schema under which stand the names of the models that a table may be of."""
+
+
+def one_table_of(*models: type[Words]) -> JsonSchemaValue:
+    """Describe a table of one of several models, by their names: they may hold each other."""
+    return {"type": "object", TABLES: [model.__name__ for model in models]}
 
 
 def wrong(message: str, remedy: str = "", *, at: Path = ()) -> PydanticCustomError:
@@ -108,9 +117,10 @@ class Quantity:
 
     def json_schema(self) -> JsonSchemaValue:
         """Describe the value as a case file writes it."""
+        written = {"unit": self.kind.unit, "pattern": WRITTEN_QUANTITY}
         if self.kind.unit:
-            return {"type": "string", "unit": self.kind.unit, "examples": [self.kind.example]}
-        return {"type": ["number", "string"], "unit": "", "examples": [0.06, self.kind.example]}
+            return {"type": "string", "examples": [self.kind.example], **written}
+        return {"type": ["number", "string"], "examples": [0.06, self.kind.example], **written}
 
 
 Length = Annotated[float, Quantity(units.LENGTH, above=0.0)]
@@ -234,16 +244,37 @@ def one_of(literal: Any, what: str) -> BeforeValidator:
     return BeforeValidator(check)
 
 
-def between(least: float, most: float, *, open_low: bool = False) -> AfterValidator:
-    """Make the validator of a plain number within bounds."""
+@dataclass(frozen=True)
+class Between:
+    """Annotation of a plain number within bounds; the lower one may be excluded."""
 
-    def check(value: float) -> float:
-        if not (least < value if open_low else least <= value) or value > most:
-            start = "above" if open_low else "from"
+    least: float
+    most: float
+    open_low: bool
+
+    def check(self, value: float) -> float:
+        """Return a number within the bounds, refuse any other."""
+        low, high = self.least, self.most
+        if not (low < value if self.open_low else low <= value) or value > high:
+            start = "above" if self.open_low else "from"
             raise wrong(
-                f"must be {start} {least:g} to {most:g}",
-                f"Choose a number {start} {least:g} to {most:g}",
+                f"must be {start} {low:g} to {high:g}",
+                f"Choose a number {start} {low:g} to {high:g}",
             )
         return value
 
-    return AfterValidator(check)
+    def __get_pydantic_core_schema__(
+        self, source: Any, handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
+        return core_schema.no_info_after_validator_function(self.check, handler(source))
+
+    def __get_pydantic_json_schema__(
+        self, schema: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> JsonSchemaValue:
+        low = "exclusiveMinimum" if self.open_low else "minimum"
+        return {**handler(schema), low: self.least, "maximum": self.most}
+
+
+def between(least: float, most: float, *, open_low: bool = False) -> Between:
+    """Make the annotation of a plain number within bounds."""
+    return Between(least, most, open_low)

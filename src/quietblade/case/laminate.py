@@ -16,6 +16,7 @@ from quietblade.case.fields import (
     between,
     entries_from,
     one_of,
+    one_table_of,
     wrong,
 )
 from quietblade.case.loss import STRUCTURAL_LOSS, LossValue
@@ -66,7 +67,7 @@ class LaminateWords(Words):
     plies: Annotated[
         tuple[PlyWords, ...],
         entries_from(1),
-        WithJsonSchema({"type": "array", "items": {"type": "object"}}),
+        WithJsonSchema({"type": "array", "items": one_table_of(PlyWords), "minItems": 1}),
     ] = Field(
         title="Plies",
         description="Tables { material, angle, thickness or fraction } in the order of the drape; "

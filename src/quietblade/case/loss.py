@@ -28,6 +28,7 @@ from quietblade.case.fields import (
     between,
     entries_from,
     is_si,
+    one_table_of,
     wrong,
 )
 from quietblade.case.problems import Path, suggestion
@@ -94,7 +95,7 @@ class OneOf:
     def __get_pydantic_json_schema__(
         self, schema: CoreSchema, handler: GetJsonSchemaHandler
     ) -> JsonSchemaValue:
-        return {"type": "object"}
+        return one_table_of(*self.models.values())
 
 
 def _plain(value: Any) -> Any:
@@ -305,7 +306,7 @@ class _Loss:
     def __get_pydantic_json_schema__(
         self, schema: CoreSchema, handler: GetJsonSchemaHandler
     ) -> JsonSchemaValue:
-        return {"anyOf": [{"type": "number"}, {"type": "object"}]}
+        return {"anyOf": [{"type": "number"}, one_table_of(*LOSS_MODELS.models.values())]}
 
 
 LossValue: TypeAlias = Annotated[float | LossWords, _Loss(film=False)]

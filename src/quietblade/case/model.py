@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from os import PathLike
 from pathlib import Path as FilePath
-from typing import Any, Self
+from typing import Annotated, Any, Self
 
 from pydantic import Field, PrivateAttr, ValidationError, model_validator
 
@@ -16,7 +16,7 @@ from quietblade.case.campbell import CampbellWords
 from quietblade.case.excitation import Excitations, RootMotionWords, TransferWords
 from quietblade.case.explain import explain, material_findings
 from quietblade.case.far_field import BandsWords, FarFieldWords, LimitWords
-from quietblade.case.fields import Text, Words, wrong
+from quietblade.case.fields import Count, Text, Words, between, wrong
 from quietblade.case.flow import FlowWords
 from quietblade.case.laminate import LaminateWords
 from quietblade.case.library import library_material
@@ -35,6 +35,7 @@ from quietblade.case.tables import (
     StaticWords,
     WaterWords,
 )
+from quietblade.case.versions import FORMAT, migrated
 
 _KEY_DIGITS = 12
 
@@ -42,6 +43,11 @@ _KEY_DIGITS = 12
 class Case(Words):
     """A study of one blade. Made by `load`, `parse` or `from_plain`; all values in SI units."""
 
+    format: Annotated[Count, between(1, FORMAT)] = Field(
+        FORMAT,
+        title="Format",
+        description="Format of the file, for later versions; the first if not given",
+    )
     title: Text = Field("", title="Title", description="One line for people")
     blade: BladeWords = Field(title="Blade", description="Shape and material of the blade")
     film: FilmWords | None = Field(None, title="Film", description="Embedded viscoelastic film")
@@ -243,7 +249,7 @@ class Case(Words):
         "files", the content counts, not the name.
         """
         plain = self.plain()
-        del plain["title"], plain["materials"], plain["blade"]["material"]
+        del plain["format"], plain["title"], plain["materials"], plain["blade"]["material"]
         plain["materials"] = {"blade": self._physics_of(self.material("blade"))}
         if self.film is not None:
             del plain["film"]["material"]
@@ -316,6 +322,7 @@ class Case(Words):
 
     @classmethod
     def _build(cls, source: Source) -> Self:
+        source = migrated(source)
         findings = list(material_findings(source.data))
         try:
             case = cls.model_validate(source.data, context={"si": source.si})

@@ -44,7 +44,7 @@ class Problem:
         place = self.file if self.line is None else f"{self.file}:{self.line}"
         subject = f"{self.key} = {self.value}" if self.key and self.value else self.key
         parts = [part for part in (place, subject, self.message) if part]
-        return ": ".join(parts) + (f". {self.remedy}" if self.remedy else "")
+        return _printable(": ".join(parts) + (f". {self.remedy}" if self.remedy else ""))
 
     def as_dict(self) -> dict[str, str | int | None]:
         """Plain data, for ``--json``."""
@@ -86,19 +86,29 @@ def _is_bare(key: str) -> bool:
 
 def shown(value: Any) -> str:
     """Write a value as it stands in a case file, shortened to fit on a line."""
-    text = _literal(value)
+    return shortened(literal(value))
+
+
+def shortened(text: str) -> str:
+    """Return a text that fits on a line of a message."""
     return text if len(text) <= _LONGEST_VALUE else text[: _LONGEST_VALUE - 4] + " ..."
 
 
-def _literal(value: Any) -> str:
+def _printable(text: str) -> str:
+    """Return a text without what a terminal would obey instead of showing."""
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
+
+
+def literal(value: Any) -> str:
+    """Write a value as TOML."""
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, str):
-        return json.dumps(value, ensure_ascii=False)
+        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
     if isinstance(value, list | tuple):
-        return "[" + ", ".join(map(_literal, value)) + "]"
+        return "[" + ", ".join(map(literal, value)) + "]"
     if isinstance(value, dict):
-        return "{ " + ", ".join(f"{dotted((k,))} = {_literal(v)}" for k, v in value.items()) + " }"
+        return "{ " + ", ".join(f"{dotted((k,))} = {literal(v)}" for k, v in value.items()) + " }"
     return str(value)
 
 

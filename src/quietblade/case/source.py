@@ -9,7 +9,7 @@ from pathlib import Path as FilePath
 from typing import Any
 
 from quietblade.case.lines import locate_lines
-from quietblade.case.problems import InvalidCaseError, Path, Problem, dotted, shown
+from quietblade.case.problems import InvalidCaseError, Path, Problem, dotted, shortened, shown
 
 _ABSENT = object()
 _TOML_PLACE = re.compile(r" \(at (?:line (\d+), column \d+|end of document)\)")
@@ -141,7 +141,7 @@ def _not_toml(text: str, name: str, message: str) -> Problem:
     row = rows[line - 1] if line is not None and 0 < line <= len(rows) else ""
     fault = _TOML_PLACE.sub("", message)
     fault = f"is not valid TOML: {fault[:1].lower()}{fault[1:]}"
-    remedy = f"Look at: {row.strip()}" if row.strip() else ""
+    remedy = f"Look at: {shortened(row.strip())}" if row.strip() else ""
     if _BARE_QUANTITY.match(row):
         remedy = f'A value with its unit stands in quotes, as in speed = "5 m/s". {remedy}'
     elif "overwrite" in fault or "twice" in fault:

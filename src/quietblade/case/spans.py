@@ -163,10 +163,19 @@ class Spanwise:
             "unit": value["unit"],
             "anyOf": [
                 value,
-                {"type": "object", "properties": table, "required": ["s", "values"]},
-                {"type": "object", "properties": formula, "required": ["formula"]},
+                _closed(table, "s", "values"),
+                _closed(formula, "formula"),
             ],
         }
+
+
+def _closed(properties: JsonSchemaValue, *required: str) -> JsonSchemaValue:
+    return {
+        "type": "object",
+        "properties": properties,
+        "required": list(required),
+        "additionalProperties": False,
+    }
 
 
 def _known_keys(value: Mapping[str, Any], known: tuple[str, ...]) -> None:

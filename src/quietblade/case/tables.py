@@ -4,7 +4,7 @@
 from itertools import pairwise
 from typing import Annotated, Literal, get_args
 
-from pydantic import AfterValidator, BeforeValidator, Field, model_validator
+from pydantic import AfterValidator, BeforeValidator, Field, WithJsonSchema, model_validator
 
 from quietblade.case.excitation import Correlation, Signal
 from quietblade.case.fields import (
@@ -84,6 +84,14 @@ def _section(word: object) -> object:
     return word
 
 
+_SECTIONS = {
+    "anyOf": [
+        {"enum": list(get_args(Section))},
+        {"type": "string", "pattern": rf"^{FILE}\s*\S"},
+    ]
+}
+
+
 def _ramp(fractions: tuple[float, ...]) -> tuple[float, ...]:
     steps = (0.0, *fractions)
     if any(a >= b for a, b in pairwise(steps)) or fractions[-1] != 1.0:
@@ -104,7 +112,7 @@ class BladeWords(Words):
         title="Hub radius", description="Radius of the root section from the rotor axis"
     )
     span: Length = Field(title="Span", description="Distance from the root to the tip section")
-    section: Annotated[Text, BeforeValidator(_section)] = Field(
+    section: Annotated[Text, BeforeValidator(_section), WithJsonSchema(_SECTIONS)] = Field(
         "naca-4",
         title="Section",
         description="Family of sections, or `file:` and the name of a file of coordinates (Selig "

@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 
 _NUMBER = r"[+-]?(?:\d[\d_]*\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
 _QUANTITY = re.compile(rf"\s*({_NUMBER})\s*(.*?)\s*", re.DOTALL)
+WRITTEN_QUANTITY = rf"^\s*{_NUMBER}\s*(?:[A-Za-zµμΩ%°(]|1\s*/).*$"
+"""Pattern of a number and a unit, for tools that know no units."""
 _NAME = r"[A-Za-z_µμΩ]+|[%°]"
 _FACTOR = rf"(?:1|(?:{_NAME})(?:(?:\^|\*\*)[+-]?[1-9]|⁻?[¹²³])?)"
 # products, one level of parentheses, exponents of one digit: nothing that pint could choke on

@@ -7,10 +7,15 @@ from typing import Annotated
 import typer
 
 from quietblade.cli.common import ExitCode, console, show_json, show_notices, show_table
+from quietblade.cli.files import write_file
 
 
 def check(
     case: Annotated[Path, typer.Argument(help="Case file (TOML).")],
+    migrate: Annotated[
+        bool,
+        typer.Option("--migrate", help="Rewrite an older file in the newest format first."),
+    ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Write JSON instead of tables.")] = False,
 ) -> int:
     """Say how a case file is understood; nothing is computed."""
@@ -18,6 +23,8 @@ def check(
     from quietblade.case import Case, InvalidCaseError  # noqa: PLC0415
 
     try:
+        if migrate:
+            _migrate(case)
         words = Case.load(case)
         from quietblade.cli.describe import case_data, case_tables  # noqa: PLC0415
         from quietblade.study.preflight import preflight  # noqa: PLC0415
@@ -36,3 +43,15 @@ def check(
         show_table(title, rows)
     show_notices(known.notices)
     return ExitCode.DONE
+
+
+def _migrate(path: Path) -> None:
+    from quietblade.case import Case  # noqa: PLC0415
+    from quietblade.case.source import read_source  # noqa: PLC0415
+    from quietblade.case.versions import migrated_text  # noqa: PLC0415
+
+    old = read_source(path).text
+    new = migrated_text(old, str(path))
+    Case.parse(new, str(path))  # what is not a case is left as it is
+    if new != old:
+        write_file(path.resolve(), new)

@@ -85,6 +85,9 @@ def execute(arguments: Sequence[str]) -> int:
         )
     except QuietbladeError as error:
         return show_error(error)
+    except OSError as error:  # a full disk, a name that is too long, a file that is locked
+        place = f"{error.filename}: " if error.filename else ""
+        return show_error(QuietbladeError(f"{place}{error.strerror or error}"))
     except _UsageError as error:
         error.show()
         return ExitCode.CASE_WRONG

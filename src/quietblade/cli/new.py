@@ -1,33 +1,58 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """``quietblade new``: write a case file to start from."""
 
+import sys
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from quietblade.cli.common import console
+from quietblade.cli.files import case_path, write_file, write_schema
 from quietblade.errors import CaseError
 
 
 def new(
-    name: Annotated[str, typer.Argument(help="Name of the case; NAME.toml is written.")],
+    name: Annotated[
+        str | None, typer.Argument(help="Name of the case; NAME.toml is written.")
+    ] = None,
     preset: Annotated[
-        str, typer.Option(help="paper-aluminium, paper-composite or twisted.")
-    ] = "paper-aluminium",
+        str | None,
+        typer.Option(help="paper-aluminium (the default), paper-composite, hydrofoil or twisted."),
+    ] = None,
+    ask: Annotated[
+        bool, typer.Option("--ask", help="Ask for the main values; so does no NAME at a terminal.")
+    ] = False,
+    schema: Annotated[
+        bool,
+        typer.Option(
+            "--schema",
+            help="Write the JSON schema beside it, by which editors complete and check keys; "
+            "without NAME nothing else.",
+        ),
+    ] = False,
     force: Annotated[bool, typer.Option("--force", help="Replace a file that is there.")] = False,
 ) -> None:
     """Write a case file with comments, to start from."""
     from quietblade.case.presets import PRESETS, preset_text  # noqa: PLC0415  # as in check
+    from quietblade.case.schema import DIRECTIVE  # noqa: PLC0415
 
-    text = preset_text(preset)
-    path = Path(name if name.endswith(".toml") else f"{name}.toml")
-    if path.exists() and not force:
-        raise CaseError(f"{path} exists already. Choose another name, or replace it with --force")
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise CaseError(f"{path} cannot be written: {error.strerror}") from error
-    console.print(f"{path}: {PRESETS[preset]}", markup=False)
+    if schema and name is None and not ask:
+        console.print(f"{write_schema(Path())}: schema of case files", markup=False)
+        return
+    if ask or (name is None and sys.stdin.isatty()):
+        from quietblade.cli.questions import ask_case  # noqa: PLC0415
+
+        path, text = ask_case(name, preset, force=force)
+        about = "from your answers"
+    elif name is None:
+        raise CaseError("new needs the NAME of a case to write, or --ask to be asked for it")
+    else:
+        preset = preset or next(iter(PRESETS))
+        text, path = preset_text(preset), case_path(name, force=force)
+        about = PRESETS[preset]
+    write_file(path, (DIRECTIVE if schema else "") + text)
+    if schema:
+        write_schema(path.parent)
+    console.print(f"{path}: {about}", markup=False)
     console.print(f"next: quietblade check {path}", markup=False)

@@ -17,6 +17,7 @@ from quietblade.errors import MaterialError, MeshError
 from quietblade.linalg import default_threads
 from quietblade.materials import AnisotropicSVK, Material, MixedMaterial, green_lagrange
 from quietblade.mesh.assembly import csr_of
+from quietblade.mesh.boundaries import boundary, held_boundary
 from quietblade.mesh.nodal import NodalBasis
 from quietblade.propulsion.loading import Loading
 from quietblade.typing import BoolArray, FloatArray, IntArray
@@ -74,7 +75,7 @@ class StructuralForms:
         self.fem, self.materials, self.wetted = fem, dict(materials), wetted
         self.basis = NodalBasis(fem) if basis is None else basis
         _check_mixed(materials)
-        _check_boundary(fem, wetted)
+        boundary(fem, wetted)
         self.mixed = {n: m for n, m in materials.items() if isinstance(m, MixedMaterial)}
         self.elastic = {n: m for n, m in materials.items() if not isinstance(m, MixedMaterial)}
         self.V = ngs.VectorH1(fem, order=2)
@@ -127,8 +128,7 @@ class StructuralForms:
         MeshError
             If none does.
         """
-        _check_boundary(self.fem, pattern)
-        return self.fem.Boundaries(pattern)
+        return boundary(self.fem, pattern)
 
     def gradient(self, u: ngs.CoefficientFunction) -> ngs.CoefficientFunction:
         """Deformation gradient F of a displacement."""
@@ -328,8 +328,8 @@ class StructuralForms:
         scalar = ngs.H1(self.fem, order=2)
         blocks = np.tile(_dofs(scalar, self.solid), (3, 1))
         for axis, pattern in [*held.items(), *guided.items()]:
-            _check_boundary(self.fem, pattern)
-            blocks["xyz".index(axis), _dofs(scalar, self.fem.Boundaries(pattern))] = False
+            held_to = _dofs(scalar, held_boundary(self.fem, pattern))
+            blocks["xyz".index(axis), held_to] = False
         if self.P is None:
             return blocks.ravel()
         return np.concatenate([blocks.ravel(), _dofs(self.P, self.mixed_region)])
@@ -376,12 +376,4 @@ def _check_mixed(materials: Mapping[str, Material]) -> None:
     if len(mixed) > 1:
         raise MaterialError(
             f"regions {' and '.join(mixed)} both have a mixed material; only one may (the film)."
-        )
-
-
-def _check_boundary(fem: ngs.Mesh, pattern: str) -> None:
-    if not any(fem.Boundaries(pattern).Mask()):
-        raise MeshError(
-            f"no boundary of the mesh matches {pattern!r}: it has "
-            f"{sorted(set(fem.GetBoundaries()))}."
         )

@@ -26,7 +26,14 @@ def replacing(path: Path) -> Iterator[Path]:
     ------
     Path
         Hidden file in the same folder with the same suffix.
+
+    Raises
+    ------
+    ResultError
+        What is there is no regular file: a device, for instance, must not become one.
     """
+    if path.exists() and not path.is_file():
+        raise ResultError(f"{path} is not a file that could be replaced. Name another")
     path.parent.mkdir(parents=True, exist_ok=True)
     temporary = path.with_name(f".{os.getpid()}-{path.name}")
     try:

@@ -17,9 +17,10 @@ from ngsolve.comp import IntegrationRuleSpaceSurface
 from scipy.sparse import csr_matrix
 
 from quietblade.mesh.assembly import csr_of
+from quietblade.mesh.boundaries import boundary
 from quietblade.mesh.model import INTERFACE
 from quietblade.typing import ComplexArray, FloatArray
-from quietblade.vibroacoustics.fluid import Water, boundary, potential_space
+from quietblade.vibroacoustics.fluid import Water, potential_space
 from quietblade.vibroacoustics.harmonics import solid_harmonics
 from quietblade.vibroacoustics.radiation import check_sphere, sphere_mass
 

@@ -4,8 +4,9 @@
 import ngsolve as ngs
 import numpy as np
 
+from quietblade.mesh.boundaries import boundary
 from quietblade.typing import FloatArray
-from quietblade.vibroacoustics.fluid import boundary, fluid_normal
+from quietblade.vibroacoustics.fluid import fluid_normal
 
 
 def pressure_force(

@@ -15,6 +15,7 @@ from scipy.sparse import csr_matrix
 
 from quietblade.errors import MeshError
 from quietblade.mesh.assembly import csr_of
+from quietblade.mesh.boundaries import boundary
 from quietblade.mesh.model import INTERFACE
 
 FLUID = "water"
@@ -47,21 +48,6 @@ def potential_space(fem: ngs.Mesh) -> ngs.H1:
     With ``definedon`` the space would leave out the edges of the solid from its numbering.
     """
     return ngs.H1(fem, order=2)
-
-
-def boundary(fem: ngs.Mesh, pattern: str) -> ngs.Region:
-    """Boundary region by name pattern.
-
-    Raises
-    ------
-    MeshError
-        If no boundary matches.
-    """
-    region = fem.Boundaries(pattern)
-    if not any(region.Mask()):
-        names = sorted(set(fem.GetBoundaries()))
-        raise MeshError(f"no boundary of the mesh matches {pattern!r}; it has {names}")
-    return region
 
 
 def fluid_normal(fem: ngs.Mesh, surface: ngs.Region) -> ngs.CoefficientFunction:

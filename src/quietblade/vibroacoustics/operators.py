@@ -16,12 +16,12 @@ from scipy.sparse import coo_array, csr_matrix
 
 from quietblade.errors import MeshError
 from quietblade.materials.viscoelastic import ModulusRatio
+from quietblade.mesh.boundaries import boundary, held_boundary
 from quietblade.mesh.model import INTERFACE
 from quietblade.typing import AnyArray, FloatArray, IntArray
 from quietblade.vibroacoustics.fluid import (
     FLUID,
     Water,
-    boundary,
     compressibility_matrix,
     coupling_matrix,
     kinetic_matrix,
@@ -208,13 +208,13 @@ def free_unknowns(fem: ngs.Mesh, clamped: str | None = CLAMPED) -> tuple[IntArra
     Raises
     ------
     MeshError
-        If the mesh has no solid or no water.
+        If the mesh has no solid, no water or no face of a name in ``clamped``.
     """
     space = product_space(fem)
     displacement, pressure, potential = space.components
     moving = _dofs(displacement, fem.Materials(SOLID))
     if clamped is not None:
-        moving &= ~_dofs(displacement, fem.Boundaries(clamped))
+        moving &= ~_dofs(displacement, held_boundary(fem, clamped))
     squeezed = _dofs(pressure, fem.Materials(FILM))
     wet = _dofs(potential, fem.Materials(FLUID))
     for name, mask in ((SOLID, moving), (FLUID, wet)):

@@ -5,10 +5,10 @@ import numpy as np
 from scipy.sparse import coo_array, csr_matrix
 
 from quietblade.errors import MeshError
+from quietblade.mesh.boundaries import boundary
 from quietblade.mesh.nodal import NodalBasis
 from quietblade.mesh.surface import SurfaceQuadrature
 from quietblade.typing import FloatArray
-from quietblade.vibroacoustics.fluid import boundary
 
 _POINTS_A_SEGMENT = 8
 _REACH = 1e-2  # of the surface's size: farther from it a place is a mistake

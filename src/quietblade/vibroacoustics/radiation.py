@@ -11,8 +11,9 @@ from scipy.sparse import csr_matrix
 
 from quietblade.errors import MeshError
 from quietblade.mesh.assembly import csr_of
+from quietblade.mesh.boundaries import boundary
 from quietblade.typing import ComplexArray, FloatArray
-from quietblade.vibroacoustics.fluid import Water, boundary, potential_space
+from quietblade.vibroacoustics.fluid import Water, potential_space
 
 
 class RadiationCondition(Protocol):

@@ -15,6 +15,7 @@ import ngsolve as ngs
 import numpy as np
 from scipy.sparse import coo_array, csr_matrix
 
+from quietblade.mesh.boundaries import held_boundary
 from quietblade.mesh.model import INTERFACE
 from quietblade.mesh.nodal import NodalBasis
 from quietblade.typing import AnyArray, ComplexArray, FloatArray
@@ -138,6 +139,8 @@ def add_root(
 
     Raises
     ------
+    MeshError
+        If no face of the mesh has a name in ``root``.
     ValueError
         If a stream has been added already, or the lossy regions are not those of the operators.
     """
@@ -285,7 +288,7 @@ def _rigid_motions(
         columns.append(basis.to_dofs(np.tile(axis, (len(points), 1))))
     for axis in np.eye(3):
         columns.append(basis.to_dofs(np.cross(axis, arm)))
-    clamped = np.array(space.GetDofs(fem.Boundaries(root)), dtype=bool)
+    clamped = np.array(space.GetDofs(held_boundary(fem, root)), dtype=bool)
     return np.where(clamped[:, None], np.stack(columns, axis=1), 0.0)
 
 

@@ -12,6 +12,7 @@ PRESETS: Mapping[str, str] = MappingProxyType(
     {
         "paper-aluminium": "the aluminium blade of the two-step paper",
         "paper-composite": "the woven carbon blade of the two-step paper",
+        "hydrofoil": "a fixed hydrofoil of a water-tunnel experiment",
         "twisted": "a twisted, swept and cambered blade of bronze with a film",
     }
 )
