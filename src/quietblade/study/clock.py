@@ -126,7 +126,6 @@ class Stages(Clock):
                 self.notices.append(Notice(f"stage {name}", fault, remedy=remedy))
         return result
 
-
     def shelve(
         self, name: str, compute: Callable[[Progress], Made], makers: Makers = _NOTHING
     ) -> Callable[[], Made]:
