@@ -53,7 +53,7 @@ def test_every_variable_says_unit_and_meaning(notebook: dict[str, Any]) -> None:
 
 
 SAYS = {
-    "case": ("NACA", "45 mm", "80 to 150 Hz"),
+    "case": ("NACA", "60 mm", "80 to 150 Hz"),
     "blade": ("chord [mm]", "75"),
     "mesh": ("hexahedron20", "radius"),
     "static": ("von Mises", "MPa", "tip displacement"),
