@@ -63,6 +63,22 @@ def test_every_cited_equation_exists() -> None:
     } == {}
 
 
+def test_every_equation_is_cited_by_code_or_declared_explanatory() -> None:
+    cited: set[str] = set()
+    for folder in ("src", "verification"):
+        for file in (ROOT / folder).rglob("*.py"):
+            text = file.read_text(encoding="utf-8")
+            cited |= set(LABEL.findall(text))
+            for step, first, last in re.findall(r"\bS([12])-(\d+) to S[12]-(\d+)\b", text):
+                cited |= {f"S{step}-{k}" for k in range(int(first), int(last) + 1)}
+    explained = set()
+    for page in ROOT.glob("docs/theory*.md"):
+        declared = re.findall(r"^Explanatory only: (.*)\.$", page.read_text(encoding="utf-8"), re.M)
+        explained |= {label for line in declared for label in LABEL.findall(line)}
+    assert set(defined_labels()) - cited - explained == set()
+    assert explained & cited == set()  # what code cites explains more
+
+
 def test_labels_are_unique_and_have_an_anchor() -> None:
     labels = defined_labels()
     assert len(labels) == len(set(labels)) > 20

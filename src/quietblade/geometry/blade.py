@@ -123,7 +123,7 @@ class Blade(Shown):
         return origin + shift[..., None] * t, t, n
 
     def place(self, s: ArrayLike, xy: ArrayLike) -> FloatArray:
-        """Section coordinates to space.
+        """Section coordinates to space (theory: S1-4).
 
         Parameters
         ----------
