@@ -11,7 +11,7 @@ import pytest
 from quietblade.case import Case
 from quietblade.case.library import NAMES, SOURCE_OF
 from quietblade.study.preflight import preflight
-from tools import case_reference
+from tools import case_reference, draw_house
 from verification.acoustics_closed_forms import bgt1, power_ratio
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -87,6 +87,16 @@ def test_labels_are_unique_and_have_an_anchor() -> None:
         assert re.findall(r"^\((S[12]-\d+)\)=$", text, re.M) == re.findall(
             r"\\tag\{(S[12]-\d+)\}", text
         )
+
+
+def test_drawing_of_the_house_has_every_room_in_its_order() -> None:
+    drawing = (ROOT / "docs" / "_static" / "house.svg").read_text(encoding="utf-8")
+    rooms = [room for storey in draw_house.layers() for room in storey]
+    places = [drawing.find(f">{room}</text>") for room in rooms]
+    assert len(rooms) > 8
+    assert min(places) > 0
+    assert places == sorted(places)
+    assert set(rooms) | {"case"} == set(draw_house.contents())
 
 
 def makefile_targets() -> set[str]:

@@ -40,7 +40,7 @@ def room(ax: Axes, x: float, y: float, width: float, name: str, holds: str) -> N
     colour = OWN.get(name, WALL)
     ax.add_patch(Rectangle((x, y), width, HEIGHT, facecolor=colour, edgecolor=INK, linewidth=1.1))
     ax.text(x + 0.15, y + 0.63, name, fontsize=11, weight="bold", color=INK)
-    lines = "\n".join(wrap(holds, int(11 * width)))
+    lines = "\n".join(wrap(holds, int(9 * width)))
     ax.text(x + 0.15, y + 0.5, lines, fontsize=7.6, color=INK, va="top", linespacing=1.1)
 
 
