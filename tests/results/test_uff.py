@@ -83,4 +83,4 @@ def test_without_pyuff_the_remedy_is_named(
 ) -> None:  # fmt: skip
     monkeypatch.setitem(sys.modules, "pyuff", None)
     assert execute(["export", str(run.root), "--uff", str(tmp_path)]) == 3
-    assert "pip install quietblade[uff]" in capsys.readouterr().err
+    assert 'pip install "quietblade[uff]"' in capsys.readouterr().err

@@ -38,7 +38,7 @@ def test_steps_give_what_a_run_gives(notebook: dict[str, Any]) -> None:
         for name, variable in node.to_dataset(inherit=False).variables.items():
             other = at_once[node.path].to_dataset(inherit=False)[name].values
             if variable.dtype.kind in "fc" and name not in {"residual", "error_estimate"}:
-                size = np.nanmax(np.abs(other), initial=0.0)
+                size = np.max(np.abs(np.nan_to_num(other)), initial=0.0)
                 np.testing.assert_allclose(variable.values, other, rtol=1e-6, atol=1e-9 * size)
             elif variable.dtype.kind not in "fc":
                 assert np.array_equal(variable.values, other), f"{node.path}/{name}"
@@ -72,7 +72,7 @@ def test_objects_show_short_tables_with_units(notebook: dict[str, Any], name: st
         assert words.lower() in html.lower()
     assert str(shown) == text
     assert len(text.splitlines()) <= 20
-    assert html.count("<tr>") == html.count("</tr>") >= 3
+    assert html.count("<tr>") == html.count("</tr>") >= 2
 
 
 def test_parts_show_themselves_too(notebook: dict[str, Any]) -> None:

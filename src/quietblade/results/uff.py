@@ -58,7 +58,7 @@ def write_uff(folder: RunFolder, out: Path) -> tuple[Path, ...]:
     except ImportError:
         raise ResultError(
             "universal files need the package pyuff, which is not installed; install it with "
-            "`pip install quietblade[uff]`"
+            '`pip install "quietblade[uff]"`'
         ) from None
     result = folder.load()
     out.mkdir(parents=True, exist_ok=True)
