@@ -11,7 +11,7 @@ import pytest
 from quietblade.case import Case
 from quietblade.case.library import NAMES, SOURCE_OF
 from quietblade.study.preflight import preflight
-from tools import case_reference
+from tools import case_reference, draw_house
 from verification.acoustics_closed_forms import bgt1, power_ratio
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -63,6 +63,22 @@ def test_every_cited_equation_exists() -> None:
     } == {}
 
 
+def test_every_equation_is_cited_by_code_or_declared_explanatory() -> None:
+    cited: set[str] = set()
+    for folder in ("src", "verification"):
+        for file in (ROOT / folder).rglob("*.py"):
+            text = file.read_text(encoding="utf-8")
+            cited |= set(LABEL.findall(text))
+            for step, first, last in re.findall(r"\bS([12])-(\d+) to S[12]-(\d+)\b", text):
+                cited |= {f"S{step}-{k}" for k in range(int(first), int(last) + 1)}
+    explained = set()
+    for page in ROOT.glob("docs/theory*.md"):
+        declared = re.findall(r"^Explanatory only: (.*)\.$", page.read_text(encoding="utf-8"), re.M)
+        explained |= {label for line in declared for label in LABEL.findall(line)}
+    assert set(defined_labels()) - cited - explained == set()
+    assert explained & cited == set()  # what code cites explains more
+
+
 def test_labels_are_unique_and_have_an_anchor() -> None:
     labels = defined_labels()
     assert len(labels) == len(set(labels)) > 20
@@ -71,6 +87,16 @@ def test_labels_are_unique_and_have_an_anchor() -> None:
         assert re.findall(r"^\((S[12]-\d+)\)=$", text, re.M) == re.findall(
             r"\\tag\{(S[12]-\d+)\}", text
         )
+
+
+def test_drawing_of_the_house_has_every_room_in_its_order() -> None:
+    drawing = (ROOT / "docs" / "_static" / "house.svg").read_text(encoding="utf-8")
+    rooms = [room for storey in draw_house.layers() for room in storey]
+    places = [drawing.find(f">{room}</text>") for room in rooms]
+    assert len(rooms) > 8
+    assert min(places) > 0
+    assert places == sorted(places)
+    assert set(rooms) | {"case"} == set(draw_house.contents())
 
 
 def makefile_targets() -> set[str]:

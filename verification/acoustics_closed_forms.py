@@ -55,7 +55,7 @@ def reflection(degree: int, k: float, radius: float, condition: Bgt | None) -> c
 
 
 def power_ratio(degree: int, kr: float, condition: Bgt) -> float:
-    """Power through the sphere over the exact one, for a compact source of fixed strength.
+    """Power through the sphere over the exact one, compact source (theory: S2-12).
 
     The strength is the coefficient of the singular part, A - B.
     """

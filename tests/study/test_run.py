@@ -15,7 +15,8 @@ from quietblade.results.headline import summarise
 from quietblade.results.model import Result, path
 from quietblade.results.store import RunFolder
 from quietblade.results.vtk import field_labels, read_fields
-from quietblade.study.run import finished, paper_blade, run_case
+from quietblade.study.gather import paper_blade
+from quietblade.study.run import finished, run_case
 from quietblade.study.stages import Stage, stages
 from verification.acoustics_resumed import difference
 

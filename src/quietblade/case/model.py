@@ -12,6 +12,7 @@ from typing import Annotated, Any, Self
 
 from pydantic import Field, PrivateAttr, ValidationError, model_validator
 
+from quietblade.card import Card, Shown
 from quietblade.case.campbell import CampbellWords
 from quietblade.case.excitation import Excitations, RootMotionWords, TransferWords
 from quietblade.case.explain import explain, material_findings
@@ -40,7 +41,7 @@ from quietblade.case.versions import FORMAT, migrated
 _KEY_DIGITS = 12
 
 
-class Case(Words):
+class Case(Shown, Words):
     """A study of one blade. Made by `load`, `parse` or `from_plain`; all values in SI units."""
 
     format: Annotated[Count, between(1, FORMAT)] = Field(
@@ -235,6 +236,24 @@ class Case(Words):
     def plain(self) -> dict[str, Any]:
         """Return JSON-able data with SI values; `from_plain` reads it."""
         return self.model_dump(mode="json", exclude_none=True)
+
+    def card(self) -> Card:
+        """Blade, operation, band and loads in a few lines."""
+        blade, film, flow = self.blade, self.film, self.flow
+        low, high = self.acoustics.band
+        layer = "none" if film is None else f"{1e3 * film.thickness:g} mm of {film.material}"
+        rows = (
+            ("blade", f"span {1e3 * blade.span:g} mm from radius {1e3 * blade.hub_radius:g} mm"),
+            ("section", blade.section),
+            ("material", blade.material),
+            ("film", layer),
+            ("flow", f"{flow.speed:g} m/s, shaft {flow.rotation:g} rad/s, inflow {flow.inflow}"),
+            ("excitation", ", ".join(words.kind for words in self.excitation)),
+            ("band", f"{low:g} to {high:g} Hz in steps of {self.acoustics.step:g} Hz"),
+            ("configurations", ", ".join(self.acoustics.configurations)),
+            ("mesh size", f"{1e3 * self.mesh.size:g} mm"),
+        )
+        return Card(f"Case: {self.title or self.file}", rows)
 
     def content_key(self) -> str:
         """Hash of everything that the result depends on; the same for the same physics."""

@@ -92,7 +92,7 @@ class Stream:
     def loads(
         self, sections: DeformedSections, panels: PanelSections | None = None
     ) -> SectionLoads:
-        """Compute the loads on the sections in the stream at their reference points.
+        """Compute the loads on the sections in the stream at their reference points (theory: S1-6).
 
         Parameters
         ----------

@@ -191,7 +191,7 @@ def circulation_response(sections: DeformedSections, panels: PanelSections) -> F
 
 
 def integrate(sections: DeformedSections, loads: SectionLoads) -> TotalLoads:
-    """Integrate the loads over the deformed span, from the first section to the last.
+    """Integrate the loads over the deformed span, first section to last (theory: S1-10).
 
     The integrand is the cubic spline through the sections. No load is added beyond the first and
     the last section.

@@ -241,7 +241,7 @@ class MomentumInflow(Stream):
 
 
 def prandtl_factor(exponent: FloatArray) -> FloatArray:
-    r"""Prandtl's loss factor :math:`\frac2\pi \arccos e^{-f}` of exponents f >= 0."""
+    r"""Prandtl's loss factor :math:`\frac2\pi \arccos e^{-f}` (theory: S1-85), f >= 0."""
     result: FloatArray = 2.0 / np.pi * np.arccos(np.exp(-exponent))
     return result
 

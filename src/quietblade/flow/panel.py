@@ -99,7 +99,7 @@ class PanelSections:
         self.unit = np.concatenate([_unit_solutions(self.contours[i : i + CHUNK]) for i in starts])
 
     def solve(self, alpha: FloatArray | float) -> PanelSolution:
-        """Superpose the unit solutions.
+        """Superpose the unit solutions (theory: S1-9).
 
         Parameters
         ----------
@@ -173,8 +173,8 @@ def _unit_solutions(contours: FloatArray) -> FloatArray:
 def _equations(contours: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Equations (M, N + 1, N + 1) for the strengths and the body's stream function, two streams.
 
-    Rows: constant stream function at the nodes, then the Kutta condition
-    ``gamma[0] + gamma[-1] = 0``. Right sides (M, N + 1, 2).
+    Rows: constant stream function at the nodes (theory: S1-7), then the Kutta condition
+    ``gamma[0] + gamma[-1] = 0`` (theory: S1-8). Right sides (M, N + 1, 2).
     """
     sections, nodes, _ = contours.shape
     edge = trailing_edges(contours)

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from quietblade.card import Card, Shown, outlines
 from quietblade.errors import GeometryError
 from quietblade.geometry.film import Film
 from quietblade.geometry.sections import SectionFamily, section_moments
@@ -23,8 +24,8 @@ _CONTOUR_NODES = 2001  # polygon areas within 1e-6
 _STATIONS = np.linspace(0.0, 1.0, 201)
 
 
-@dataclass(frozen=True)
-class Blade:
+@dataclass(frozen=True, repr=False)
+class Blade(Shown):
     """Shape of one blade. All lengths in m, angles in rad.
 
     Attributes
@@ -57,6 +58,42 @@ class Blade:
     alignment: float = 0.5
     film: Film | None = None
 
+    def card(self) -> Card:
+        """Measures at root, middle and tip, and the planform."""
+        s = np.array([0.0, 0.5, 1.0])
+        measures = {
+            "radius [mm]": 1e3 * self.radius(s),
+            "chord [mm]": 1e3 * self.chord(s),
+            "thickness [% of the chord]": 100.0 * self.thickness(s),
+            "camber [% of the chord]": 100.0 * self.camber(s),
+            "blade angle [deg]": np.degrees(self.blade_angle(s)),
+        }
+        rows = [(name, *(f"{v:.4g}" for v in values)) for name, values in measures.items()]
+        rows.append(("volume [cm^3]", f"{1e6 * self.volume():.4g}"))
+        if self.film is not None:
+            rows.append(("film [mm]", f"{1e3 * self.film.thickness:.4g}"))
+        return Card(
+            f"Blade of {self.family.name} sections",
+            tuple(rows),
+            ("", "root", "middle", "tip"),
+            self._planform(),
+        )
+
+    def _planform(self) -> str:
+        """Draw the outline over span and chord, and that of the film in it."""
+
+        def outline(span: tuple[float, float], chord: tuple[float, float]) -> FloatArray:
+            s = np.linspace(*span, 41)
+            along = np.concatenate([s, s[::-1], s[:1]])
+            xi = np.repeat([*chord, chord[0]], [41, 41, 1])
+            across = self.sweep(along) + (xi - self.alignment) * self.chord(along)
+            return np.stack([self.radius(along), -across], axis=1)
+
+        curves = [outline((0.0, 1.0), (0.0, 1.0))]
+        if self.film is not None:
+            curves.append(outline(self.film.span, self.film.chord))
+        return outlines(*curves)
+
     def radius(self, s: ArrayLike) -> FloatArray:
         """Radius z [m] at span fraction ``s``; shape of ``s``."""
         return np.asarray(self.hub_radius + np.asarray(s) * self.span, dtype=np.float64)
@@ -86,7 +123,7 @@ class Blade:
         return origin + shift[..., None] * t, t, n
 
     def place(self, s: ArrayLike, xy: ArrayLike) -> FloatArray:
-        """Section coordinates to space.
+        """Section coordinates to space (theory: S1-4).
 
         Parameters
         ----------

@@ -15,9 +15,9 @@ class SectionFamily(Protocol):
     """A family of sections on the unit chord: nose (0, 0), middle of the trailing edge (1, 0).
 
     A new family derives from this class and says its name, half thickness and camber line; the
-    contour follows, with the thickness perpendicular to the camber line. All arguments broadcast
-    against each other. ``thickness``, ``camber`` and ``te`` (thickness of the blunt trailing
-    edge) are fractions of the chord.
+    contour follows, with the thickness perpendicular to the camber line (theory: S1-71). All
+    arguments broadcast against each other. ``thickness``, ``camber`` and ``te`` (thickness of
+    the blunt trailing edge) are fractions of the chord.
     """
 
     @property

@@ -109,7 +109,9 @@ class TableFamily(SectionFamily):
     def point(
         self, phi: ArrayLike, thickness: ArrayLike, camber: ArrayLike, te: ArrayLike
     ) -> FloatArray:
-        """Point of the contour at the contour parameter ``phi``; see `SectionFamily.point`.
+        """Point of the contour at the contour parameter ``phi`` (theory: S1-72).
+
+        The parameter is that of `SectionFamily.point`.
 
         Returns
         -------

@@ -78,6 +78,6 @@ class IsotropicSVK:
         return self.energy_of_strain(green_lagrange(F))
 
     def energy_of_strain(self, E: ngs.CoefficientFunction) -> ngs.CoefficientFunction:
-        """Strain energy ``lambda/2 (tr E)^2 + mu E:E`` [J/m3] of the Green-Lagrange strain."""
+        """``lambda/2 (tr E)^2 + mu E:E`` [J/m3] of the Green-Lagrange strain (theory: S1-13)."""
         lam, mu = self.lame
         return 0.5 * lam * ngs.Trace(E) ** 2 + mu * ngs.InnerProduct(E, E)

@@ -66,7 +66,7 @@ class MooneyRivlin:
     def energy(
         self, F: ngs.CoefficientFunction, p: ngs.CoefficientFunction
     ) -> ngs.CoefficientFunction:
-        """Mixed energy per undeformed volume [J/m3]; ``p`` [Pa] is positive in tension."""
+        """Mixed energy [J/m3]; ``p`` [Pa] is positive in tension (theory: S1-15)."""
         return self.isochoric_energy(F) + volumetric_energy(F, p, self.bulk_modulus)
 
     def isochoric_energy(self, F: ngs.CoefficientFunction) -> ngs.CoefficientFunction:

@@ -117,7 +117,7 @@ class OrthotropicSVK:
         return self.energy_of_strain(green_lagrange(F))
 
     def energy_of_strain(self, E: ngs.CoefficientFunction) -> ngs.CoefficientFunction:
-        """Strain energy [J/m3] of the Green-Lagrange strain in the blade frame.
+        """Strain energy [J/m3] of the strain in the blade frame (theory: S1-14).
 
         ``1/2 sum_ij c_ij E_ii E_jj + 2 (g12 E_12^2 + g23 E_23^2 + g13 E_13^2)`` with the strain in
         the material axes and c the inverse of the compliance.

@@ -18,13 +18,13 @@ from quietblade.mesh.model import CellBlock, Mesh, patch_name
 from quietblade.mesh.quality import poor_cell_notices, region_quality
 from quietblade.typing import FloatArray, IntArray
 
-# gmsh's element types: name, nodes, and VTK's node order from gmsh's
-_KINDS = {
+# gmsh's element types: name, and VTK's node order from gmsh's
+CELL_KINDS = {
     11: ("tetra10", (0, 1, 2, 3, 4, 5, 6, 7, 9, 8)),
     17: ("hexahedron20", (*range(8), 8, 11, 13, 9, 16, 18, 19, 17, 10, 12, 14, 15)),
     19: ("pyramid13", (0, 1, 2, 3, 4, 5, 8, 10, 6, 7, 9, 11, 12)),
 }
-_TRIANGLE6 = 9
+TRIANGLE6 = 9
 
 _GROWTH = 0.6
 """Growth of the water's cells with the distance from the blade: 0.4 changes the frequencies of the
@@ -215,16 +215,16 @@ def _collect(blade: Blade, solids: Solids, spec: MeshSpec, centre: FloatArray) -
 def _blocks(volume: int) -> list[tuple[str, IntArray]]:
     blocks = []
     for kind, _, nodes in zip(*gmsh.model.mesh.getElements(3, volume), strict=True):
-        if kind not in _KINDS:
+        if kind not in CELL_KINDS:
             raise MeshError(f"gmsh made cells of an unexpected type {kind}")
-        name, order = _KINDS[kind]
+        name, order = CELL_KINDS[kind]
         blocks.append((name, nodes.astype(np.int64).reshape(-1, len(order))[:, order]))
     return blocks
 
 
 def _triangles(face: int, number: IntArray) -> IntArray:
     kinds, _, nodes = gmsh.model.mesh.getElements(2, face)
-    if list(kinds) != [_TRIANGLE6]:
+    if list(kinds) != [TRIANGLE6]:
         raise MeshError("a wetted face is not meshed by six-node triangles")
     return np.asarray(number[nodes[0].astype(np.int64).reshape(-1, 6)])
 

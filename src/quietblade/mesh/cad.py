@@ -70,12 +70,7 @@ def build_solids(
         The kernel did not return one volume a region.
     """
     occ = gmsh.model.occ
-    stations = _stations(blade)
-    tools = [_loft([_section_edges(blade, s) for s in stations])]
-    if blade.film is not None:
-        first, last = blade.film.span
-        inner = stations[(stations > first) & (stations < last)]
-        tools.append(_loft([_film_edges(blade, s) for s in (first, *inner, last)]))
+    tools = _lofts(blade)
     sphere = (3, occ.addSphere(*centre, radius))
     _, mapping = occ.fragment([sphere], tools)
     outlines = tuple(_outlines(blade, patch) for patch in patches)
@@ -90,6 +85,46 @@ def build_solids(
             "or the blade the sphere?"
         )
     return Solids(solid.pop(), film.pop() if film else None, water.pop(), outlines)
+
+
+def build_body(blade: Blade) -> dict[str, int]:
+    """Make blade and film without water in the current gmsh model, conforming to each other.
+
+    Returns
+    -------
+    dict of str to int
+        Volume of each region.
+
+    Raises
+    ------
+    MeshError
+        The kernel did not return one volume a region.
+    """
+    occ = gmsh.model.occ
+    solid, *films = _lofts(blade)
+    if not films:
+        occ.synchronize()
+        return {"blade": solid[1]}
+    _, (whole, film) = occ.fragment([solid], films)
+    occ.synchronize()
+    rest = set(whole) - set(film)
+    if len(film) != 1 or len(rest) != 1:
+        raise MeshError(
+            f"the geometry kernel made {len(rest)} blade and {len(film)} film volumes where one of "
+            "each is needed; does the film touch the blade's surface?"
+        )
+    return {"blade": rest.pop()[1], "film": film[0][1]}
+
+
+def _lofts(blade: Blade) -> list[tuple[int, int]]:
+    """Loft the whole blade, and the film if there is one."""
+    stations = _stations(blade)
+    lofts = [_loft([_section_edges(blade, s) for s in stations])]
+    if blade.film is not None:
+        first, last = blade.film.span
+        inner = stations[(stations > first) & (stations < last)]
+        lofts.append(_loft([_film_edges(blade, s) for s in (first, *inner, last)]))
+    return lofts
 
 
 def _stations(blade: Blade) -> FloatArray:

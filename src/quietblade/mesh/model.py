@@ -11,6 +11,7 @@ import numpy as np
 from netgen.meshing import Element3D, FaceDescriptor, PointId
 from netgen.meshing import Mesh as NetgenMesh
 
+from quietblade.card import Card, Shown
 from quietblade.errors import Notice
 from quietblade.mesh.nodal import NodalBasis
 from quietblade.typing import FloatArray, IntArray
@@ -79,8 +80,8 @@ class Quality:
     least_jacobian: float
 
 
-@dataclass(frozen=True)
-class Mesh:
+@dataclass(frozen=True, repr=False)
+class Mesh(Shown):
     """A conforming curved second-order mesh of blade, film and water in configuration C0.
 
     Attributes
@@ -125,6 +126,17 @@ class Mesh:
         return np.concatenate(
             [faces for name, faces in self.faces.items() if re.fullmatch(INTERFACE, name)]
         )
+
+    def card(self) -> Card:
+        """Cells and their quality by region."""
+        rows = []
+        for region, kinds in self.census().items():
+            quality = self.quality.get(region)
+            cells = ", ".join(f"{count} {kind}" for kind, count in kinds.items())
+            rows.append((region, cells, f"{quality.worst:.2g}" if quality else "-"))
+        rows.append(("sphere", f"radius {self.radius:g} m", ""))
+        title = f"Mesh of {len(self.nodes)} nodes, second order"
+        return Card(title, tuple(rows), ("region", "cells", "worst quality (1: regular)"))
 
     def census(self) -> dict[str, dict[str, int]]:
         """Count the cells of each region and kind."""

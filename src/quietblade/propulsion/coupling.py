@@ -14,6 +14,7 @@ from typing import get_args
 
 import numpy as np
 
+from quietblade.card import Card, Shown
 from quietblade.errors import Notice
 from quietblade.flow.inflow import BladeFlow, Inflow
 from quietblade.propulsion import acceleration
@@ -57,8 +58,8 @@ _REMEDY: dict[Kind, str] = {
 }
 
 
-@dataclass(frozen=True, eq=False)
-class StaticState:
+@dataclass(frozen=True, eq=False, repr=False)
+class StaticState(Shown):
     """Equilibrium of the blade under its own lift: the configuration C1.
 
     Attributes
@@ -106,6 +107,20 @@ class StaticState:
     fraction: float = 1.0
     kind: Kind = "steady"
     flows: float = 0.0
+
+    def card(self) -> Card:
+        """Tip, lift, and how the coupling ended."""
+        along = ", ".join(f"{1e3 * u:.2f}" for u in self.tip_displacement)
+        end = "converged" if self.converged else "NOT CONVERGED"
+        rows = (
+            ("tip displacement x, y, z", f"{along} mm"),
+            ("lift, rigid blade", f"{self.rigid.total.lift:.5g} N"),
+            ("lift, in equilibrium", f"{self.coupled.total.lift:.5g} N"),
+            ("coupling", f"{end} in {len(self.history)} passes, {self.method}; {self.kind}"),
+            ("fraction of the dynamic pressure", f"{self.fraction:g}"),
+            ("notices", f"{len(self.notices)}"),
+        )
+        return Card("Static state: blade in equilibrium with the flow", rows)
 
     @property
     def chained(self) -> BladeFlow:

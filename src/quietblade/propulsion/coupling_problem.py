@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The two solvers F (flow) and S (structure) of the coupling, and what passes between them."""
+"""The solvers F (flow) and S (structure) of the coupling, and what they exchange (theory: S1-3)."""
 
 from dataclasses import dataclass, fields, replace
 from typing import Any, Literal

@@ -214,8 +214,8 @@ class StructuralForms:
     ) -> Terms:
         """Isochoric energy of the film at the strain ``E0 + sym(F0^T grad u)``, affine in u.
 
-        Its second variation at u = 0 is ``dE : C_iso : dE``, without the initial-stress part.  A
-        weight, a function of place, multiplies the energy.
+        Its second variation at u = 0 is ``dE : C_iso : dE``, without the initial-stress part: the
+        film's loss (theory: S2-3).  A weight, a function of place, multiplies the energy.
         """
         u, _ = self.trial()
         F0 = self.gradient(base)
@@ -227,7 +227,10 @@ class StructuralForms:
         return [_variation(energy, region) for region, energy in energies.items()]
 
     def pressure_terms(self) -> Terms:
-        """Virtual work ``int p cof(F) N . v dS0`` of the follower pressure (on the left side)."""
+        """Virtual work ``int p cof(F) N . v dS0`` of the follower pressure, on the left side.
+
+        Its derivative is the load stiffness (theory: S1-17).
+        """
         (u, _), v = self.trial(), self.test()
         # The surface gradient is enough: cof(F) N only knows the tangents.
         moved_normal = ngs.Cof(ngs.Id(3) + ngs.Grad(u).Trace()) * self.outward_normal
@@ -238,7 +241,7 @@ class StructuralForms:
         ]
 
     def spin_terms(self) -> Terms:
-        """Energy ``-1/2 rho omega^2 |P_perp (X + u)|^2`` of the centrifugal force."""
+        """Energy ``-1/2 rho omega^2 |P_perp (X + u)|^2`` of the spin (theory: S1-18)."""
         u, _ = self.trial()
         distance_squared = (ngs.y + u[1]) ** 2 + (ngs.z + u[2]) ** 2
         return [

@@ -31,7 +31,7 @@ _VERTICES = {
 
 @dataclass(frozen=True, eq=False)
 class FilmShear:
-    """Transverse shear of the film, ``gamma = sqrt(gamma_13^2 + gamma_23^2)``.
+    """Transverse shear of the film, ``sqrt(gamma_13^2 + gamma_23^2)`` (theory: S1-16).
 
     ``gamma_i3 = 2 E_i3`` is the engineering shear strain: twice the Green-Lagrange component in
     the film's own axes of the undeformed configuration, 1 along the span, 2 chordwise, 3 through

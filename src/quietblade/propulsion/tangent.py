@@ -2,7 +2,7 @@
 """Tangent of the structure about an equilibrium: the solid's share of step 2.
 
 All matrices are real, symmetric, and numbered like the product space (displacement, then film
-pressure), fixed unknowns included (theory: S2-1, S1-58).
+pressure), fixed unknowns included (theory: S2-1, S2-2, S1-58).
 """
 
 from collections.abc import Iterable, Mapping

@@ -29,7 +29,8 @@ Pressure, sections to surface
     would take changes as large as the pressure itself.) The moments across the span are conserved
     as well as the weights resolve the span; what is left is reported. Any conservative transfer
     needs such conditions; compare Farhat, Lesoinne and Le Tallec, Comput. Methods Appl. Mech.
-    Engrg. 157 (1998) 95-114. Which work is conserved with the loads: (theory: S1-91).
+    Engrg. 157 (1998) 95-114. These conditions are (theory: S1-12); which work is
+conserved with the loads: (theory: S1-90, S1-91).
 
 The root face is clamped and no part of the surface. The tip face and the trailing-edge face take
 the pressures between the upper and the lower side, see `quietblade.propulsion.section_pressure`.
@@ -63,7 +64,7 @@ class SurfacePressure:
     Attributes
     ----------
     values : ndarray, shape (N,)
-        p - p_inf at the nodes [Pa]; 0 off the wetted surface.
+        p - p_inf at the nodes [Pa] (theory: S1-2); 0 off the wetted surface.
     correction : float
         Size of the correction relative to the projected pressure (root mean square by area). It
         falls with the element size at the nose; at 20 mm on a chord of 75 to 250 mm it is 0.4.

@@ -11,7 +11,7 @@ from quietblade.results.record import Record
 from quietblade.typing import FloatArray
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class AlternativeTable(Record):
     """Wet modes and peaks of the sound power of several models; the first one is the reference.
 

@@ -21,7 +21,7 @@ def of_signal(label: str, *, random: bool) -> str:
     return label
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class ExcitationTable(Record):
     """Loads in the order of the case, and their powers."""
 
@@ -48,7 +48,7 @@ class ExcitationTable(Record):
         return "1 pW/Hz" if self.signal == RANDOM else "1 pW"
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class TransferTable(Record):
     """Transfer functions that the case asks for; the others are NaN, or without rows."""
 

@@ -5,6 +5,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from quietblade.card import Card, shortened
 from quietblade.results.claims import judge_claims
 from quietblade.results.excitation_headline import excitation_summaries, transfer_summary
 from quietblade.results.far_headline import far_field_summary, limit_summaries
@@ -85,6 +86,32 @@ def summarise(result: Result) -> Summary:
         claims=tuple(ClaimSummary(**vars(claim)) for claim in judge_claims(result)),
         run=_run(result),
     )
+
+
+def result_card(result: Result) -> Card:
+    """Headline figures in a few lines, for a prompt or a notebook."""
+    static = result.static
+    rigid, coupled = (state(name) for name in ("rigid", "coupled"))
+    along = ", ".join(f"{1e3 * u:.2f}" for u in static.tip_displacement)
+    end = "converged" if static.converged else "NOT CONVERGED"
+    rows = [
+        ("tip displacement x, y, z", f"{along} mm ({end}, {static.coupling_kind})"),
+        ("lift", f"{static.lift[coupled]:.5g} N; rigid blade {static.lift[rigid]:.5g} N"),
+        ("largest shear strain of the film", f"{100.0 * static.max_film_shear_strain:.3f} %"),
+    ]
+    for name, found in result.configurations.items():
+        unit = "dB re 1 pW/Hz" if found.random else "dB re 1 pW"
+        named = zip(found.modes.name, found.modes.frequency, strict=True)
+        modes = ", ".join(f"{mode} {frequency:.2f}" for mode, frequency in named)
+        rows.append((f"{name}: wet modes", f"{modes} Hz"))
+        peaks = found.peaks
+        if len(peaks.frequency):
+            loudest = int(np.argmax(peaks.power_level))
+            level, at = peaks.power_level[loudest], peaks.frequency[loudest]
+            rows.append((f"{name}: loudest peak", f"{level:.2f} {unit} at {at:.4g} Hz"))
+        rows.append((f"{name}: mean over the band", f"{found.bands.mean_level:.2f} {unit}"))
+    rows += [(f"notice: {n.where}", n.message) for n in result.run.notices.notices()]
+    return Card(f"Result: {result.title or result.run.created}", shortened(rows))
 
 
 def _static(result: Result) -> StaticSummary:

@@ -10,7 +10,7 @@ from quietblade.results.record import Record
 from quietblade.typing import FloatArray, IntArray
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class ModeCount(Record):
     """How many wet modes there are, and of what kind."""
 
@@ -22,7 +22,7 @@ class ModeCount(Record):
     residual: FloatArray
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class LossShares(Record):
     """Where each wet mode loses its energy."""
 
@@ -31,7 +31,7 @@ class LossShares(Record):
     share: FloatArray
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Participation(Record):
     """Shares of the wet modes in the response at some frequencies."""
 
@@ -40,7 +40,7 @@ class Participation(Record):
     share: FloatArray
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class DryModes(Record):
     """Modes without water; none unless the case asks for them."""
 
@@ -53,7 +53,7 @@ class DryModes(Record):
     partner_mac: FloatArray
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class CampbellDiagram(Record):
     """Wet modes under load over the speed of the shaft; empty unless the case asks for it."""
 

@@ -8,10 +8,11 @@ Angles are in rad. A number that was not computed is NaN, a text that does not a
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
 from types import MappingProxyType
-from typing import Any, ClassVar, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 import numpy as np
 
+from quietblade.card import Card
 from quietblade.errors import Notice
 from quietblade.results.excitations import RANDOM, ExcitationTable, TransferTable
 from quietblade.results.mode_records import (
@@ -24,6 +25,9 @@ from quietblade.results.mode_records import (
 from quietblade.results.quantities import CONFIGURATIONS, LABELS
 from quietblade.results.record import Record
 from quietblade.typing import BoolArray, ComplexArray, FloatArray, IntArray
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 NAN = float("nan")
 AnyRecord = TypeVar("AnyRecord", bound=Record)
@@ -44,7 +48,7 @@ def path(name: str) -> int:
 # --- step 1 -----------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class CouplingHistory(Record):
     """The loop between flow and structure, pass by pass."""
 
@@ -59,7 +63,7 @@ class CouplingHistory(Record):
     factorizations: IntArray
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class NewtonTable(Record):
     """Newton's method in the structure, step by step over the whole loop."""
 
@@ -74,7 +78,7 @@ class NewtonTable(Record):
     new_tangent: BoolArray
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class SectionCurves(Record):
     """Curves along the span; rows are the states rigid, chained, coupled."""
 
@@ -95,7 +99,7 @@ class SectionCurves(Record):
     shedding_frequency: FloatArray
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class PerformanceFigures(Record):
     """Figures of the whole rotor; rows are the states rigid, chained, coupled."""
 
@@ -116,7 +120,7 @@ class PerformanceFigures(Record):
     inception_speed: float
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class StressTable(Record):
     """Largest stress and strain by region."""
 
@@ -129,7 +133,7 @@ class StressTable(Record):
     logarithmic_strain: FloatArray
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class FailureTable(Record):
     """Failure indices of the materials whose strength is known."""
 
@@ -141,7 +145,7 @@ class FailureTable(Record):
     place: FloatArray
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class ReactionResult(Record):
     """Force and moment of the root, and how well forces balance."""
 
@@ -154,7 +158,7 @@ class ReactionResult(Record):
     transferred_moment_error: float
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class LoadTable(Record):
     """Loads besides those of flow and spin."""
 
@@ -164,7 +168,7 @@ class LoadTable(Record):
     moment: FloatArray
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class MidSection(Record):
     """Contours of the section at mid-span; rows are the states rigid, chained, coupled."""
 
@@ -174,7 +178,7 @@ class MidSection(Record):
     placed: FloatArray
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class StaticResult(Record):
     """Step 1: the blade in equilibrium with the flow."""
 
@@ -233,7 +237,7 @@ def without_state(result: StaticResult, name: str) -> StaticResult:
 # --- step 2 -----------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class ModeTable(Record):
     """Wet modes in ascending frequency."""
 
@@ -249,7 +253,7 @@ class ModeTable(Record):
     participation: FloatArray
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Spectrum(Record):
     """Response to all excitations. A frequency that could not be solved is NaN.
 
@@ -284,7 +288,7 @@ class Spectrum(Record):
         return np.asarray(np.abs(error / self.injected), dtype=np.float64)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Dissipation(Record):
     """Where the injected power goes: each lossy region, and the water."""
 
@@ -296,7 +300,7 @@ class Dissipation(Record):
     peak_share: FloatArray
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class SweepRecord(Record):
     """How the spectrum was made."""
 
@@ -309,7 +313,7 @@ class SweepRecord(Record):
     factorizations: int
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class PeakTable(Record):
     """Peaks of the radiated power."""
 
@@ -320,7 +324,7 @@ class PeakTable(Record):
     estimate: FloatArray
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class SteppedTable(Record):
     """The peaks as sweeps in even steps would show them; empty of a direct sweep."""
 
@@ -335,7 +339,7 @@ class SteppedTable(Record):
         return cls(np.zeros(0), np.zeros((0, 0)), np.zeros((0, 0)))
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class BandTable(Record):
     """Mean power by band and over all."""
 
@@ -350,7 +354,7 @@ class BandTable(Record):
     mean_source_level: float
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class FarFieldResult(Record):
     """What leaves over frequency, and the sound pressure at points."""
 
@@ -372,7 +376,7 @@ class FarFieldResult(Record):
             return np.asarray(20.0 * np.log10(np.abs(self.pressure) / np.sqrt(2.0) / 1e-6))
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class DirectivityResult(Record):
     """Sound by direction at the peaks and at the frequencies asked for."""
 
@@ -395,7 +399,7 @@ class DirectivityResult(Record):
     product: ComplexArray
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class LimitTable(Record):
     """Levels against the limits of the case, each with its rows of frequencies."""
 
@@ -416,7 +420,7 @@ class LimitTable(Record):
         return np.asarray(self.found - self.allowed)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class ConfigurationResult(Record):
     """Step 2 about one configuration, C0 or C1."""
 
@@ -456,7 +460,7 @@ class ConfigurationResult(Record):
         return np.asarray(k * self.outer_radius, dtype=np.float64)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class ModulusTable(Record):
     """Complex moduli of the regions whose loss is more than a number."""
 
@@ -479,7 +483,7 @@ class ModulusTable(Record):
 # --- mesh and run -----------------------------------------------------------------------------
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class CellCensus(Record):
     """Number of cells by region and kind."""
 
@@ -489,7 +493,7 @@ class CellCensus(Record):
     count: IntArray
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class MeshQuality(Record):
     """Shape figures of the cells by region."""
 
@@ -500,7 +504,7 @@ class MeshQuality(Record):
     least_jacobian: FloatArray
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Unknowns(Record):
     """Free unknowns of step 2 by part."""
 
@@ -509,7 +513,7 @@ class Unknowns(Record):
     count: IntArray
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class MeshResult(Record):
     """The mesh in figures."""
 
@@ -520,7 +524,7 @@ class MeshResult(Record):
     unknowns: Unknowns
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Packages(Record):
     """Versions of the packages that the result depends on."""
 
@@ -529,7 +533,7 @@ class Packages(Record):
     version: tuple[str, ...]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Timings(Record):
     """Wall-clock time by stage."""
 
@@ -538,7 +542,7 @@ class Timings(Record):
     seconds: FloatArray
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Cost(Record):
     """What the stages of `Timings` cost besides time."""
 
@@ -549,7 +553,7 @@ class Cost(Record):
     factorization: float = NAN
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class SolverReport(Record):
     """Linear solvers by use."""
 
@@ -561,7 +565,7 @@ class SolverReport(Record):
     peak_memory: FloatArray
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Fallbacks(Record):
     """Changes of the linear solver during the run."""
 
@@ -569,7 +573,7 @@ class Fallbacks(Record):
     event: tuple[str, ...]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class NoticeTable(Record):
     """Warnings of the run."""
 
@@ -600,7 +604,7 @@ class NoticeTable(Record):
         )
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class RunRecord(Record):
     """Provenance: what made the result, on what, in which time, with which warnings."""
 
@@ -619,7 +623,7 @@ class RunRecord(Record):
     notices: NoticeTable
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Result(Record):
     """A whole study of one blade.
 
@@ -648,6 +652,18 @@ class Result(Record):
     mesh: MeshResult
     run: RunRecord
     campbell: CampbellDiagram = field(default_factory=CampbellDiagram.none)
+
+    def card(self) -> Card:
+        """Headline figures."""
+        from quietblade.results.headline import result_card  # noqa: PLC0415  # made of results
+
+        return result_card(self)
+
+    def to_xarray(self) -> "xr.DataTree":
+        """Return everything that ``result.nc`` holds, as labelled arrays with units."""
+        from quietblade.results.dataset import to_tree  # noqa: PLC0415  # made of results
+
+        return to_tree(self)
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -3,12 +3,16 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+from quietblade.card import Card, Shown
 from quietblade.results.quantities import LABELS, QUANTITIES, Kind, Quantity
 from quietblade.typing import AnyArray
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 _DTYPES: dict[Kind, type[np.generic]] = {
     "real": np.float64,
@@ -18,9 +22,13 @@ _DTYPES: dict[Kind, type[np.generic]] = {
     "text": np.str_,
 }
 
+_FEW = 3
+_LONG = 60
+"""Values, and characters of a text, that are shown rather than counted."""
 
-@dataclass(frozen=True, eq=False)
-class Record:
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Record(Shown):
     """Base of the records: one attribute a registered quantity, one record a group.
 
     Arrays are copied and made read-only. Attributes that are properties are derived: they are
@@ -55,6 +63,28 @@ class Record:
         names = {field.name for field in fields(cls)}
         return tuple(q.name for q in cls.quantities() if q.name in names)
 
+    def card(self) -> Card:
+        """Show what the record holds, with units; long arrays by their dimensions."""
+        rows = [
+            (q.name, _shown(q, array), q.label, q.description)
+            for q, array in zip(self.quantities(), self.arrays().values(), strict=True)
+        ]
+        for field in fields(self):
+            value = getattr(self, field.name)
+            if isinstance(value, Record):
+                rows.append((field.name, "record", "", _first_line(value)))
+            elif isinstance(value, Mapping):
+                rows += [(f"{field.name}[{key!r}]", "record", "", _first_line(inner))
+                         for key, inner in value.items()]  # fmt: skip
+        columns = ("name", "value", "unit", "meaning")
+        return Card(f"{type(self).__name__}: {_first_line(self)}", tuple(rows), columns)
+
+    def to_xarray(self) -> "xr.DataTree":
+        """Return labelled arrays with the unit and meaning of every variable."""
+        from quietblade.results.dataset import record_tree  # noqa: PLC0415  # which imports records
+
+        return record_tree(self)
+
     def arrays(self) -> Mapping[str, AnyArray]:
         """Every registered quantity, derived ones too, as an array with its dimensions."""
         return {q.name: as_array(q, getattr(self, q.name)) for q in self.quantities()}
@@ -83,6 +113,19 @@ def as_array(quantity: Quantity, value: Any) -> AnyArray:
             f"({', '.join(quantity.dims)})"
         )
     return np.array(given, dtype=given.dtype if text and given.size else dtype)
+
+
+def _shown(quantity: Quantity, array: AnyArray) -> str:
+    if quantity.dims and (array.size > _FEW or quantity.kind == "text"):
+        sizes = zip(quantity.dims, array.shape, strict=True)
+        return " x ".join(f"{dim} ({size})" for dim, size in sizes)
+    texts = [f"{v:.5g}" if array.dtype.kind in "fc" else str(v) for v in array.ravel()]
+    line = ", ".join(texts) or "none"
+    return line if len(line) <= _LONG and "\n" not in line else f"{len(line)} characters"
+
+
+def _first_line(record: object) -> str:
+    return (type(record).__doc__ or "").partition("\n")[0].rstrip(".")
 
 
 def _check_lengths(quantity: Quantity, array: AnyArray, lengths: dict[str, int]) -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The steady problem of a case for other programs."""
+"""The steady problem, the shape and the mesh of a case for other programs."""
 
 from pathlib import Path
 
@@ -8,6 +8,7 @@ import ngsolve as ngs
 from quietblade.case import Case
 from quietblade.linalg import default_threads
 from quietblade.mesh import build_mesh
+from quietblade.mesh.exchange import write_msh, write_step
 from quietblade.propulsion.deck import write_deck
 from quietblade.results.files import replacing
 from quietblade.study import translate
@@ -50,3 +51,33 @@ def export_deck(case: Case, file: Path, progress: Progress = silent) -> Statics:
         title = case.title or "quietblade"
         write_deck(temporary, statics.structure, statics.state.structure, title=title)
     return statics
+
+
+def export_step(case: Case, file: Path) -> None:
+    """Write the undeformed blade and its film as solids of a STEP file, in millimetres.
+
+    Raises
+    ------
+    CaseError
+        The case cannot be.
+    MeshError
+        The solids cannot be made or written.
+    """
+    blade = preflight(case).blade
+    with replacing(file) as temporary:
+        write_step(blade, temporary)
+
+
+def export_msh(case: Case, file: Path) -> None:
+    """Write the mesh of a case in gmsh's format, in metres.
+
+    Raises
+    ------
+    CaseError
+        The case cannot be.
+    MeshError
+        The mesh cannot be made or written.
+    """
+    mesh = build_mesh(preflight(case).blade, translate.mesh_spec(case))
+    with replacing(file) as temporary:
+        write_msh(mesh, temporary)

@@ -9,7 +9,6 @@ import ngsolve as ngs
 
 from quietblade import __version__
 from quietblade.case import Case
-from quietblade.case.presets import PRESETS, preset_text
 from quietblade.errors import Notice
 from quietblade.geometry import Blade
 from quietblade.linalg import default_threads
@@ -23,19 +22,19 @@ from quietblade.results.files import ResultError
 from quietblade.results.lock import locked
 from quietblade.results.model import Result
 from quietblade.results.store import RunFolder
-from quietblade.study import losses, outcome, translate
+from quietblade.study import translate
 from quietblade.study.campbell import solve_campbell
 from quietblade.study.clock import Stages
 from quietblade.study.fields import write_static_fields, write_vibration_fields
+from quietblade.study.gather import gather
 from quietblade.study.keeping import Makers, StageStore
 from quietblade.study.log import logging_to
 from quietblade.study.mode_tables import mode_tables
 from quietblade.study.preflight import Preflight, preflight
-from quietblade.study.sound import Sound, solve_sound
+from quietblade.study.sound import solve_sound
 from quietblade.study.stages import origins
 from quietblade.study.statics import Statics, build_structure, solve_statics
-from quietblade.study.vibration import Vibration, frequencies, solve_vibration
-from quietblade.study.viscous import singing
+from quietblade.study.vibration import frequencies, solve_vibration
 from quietblade.typing import Progress, silent
 
 
@@ -142,62 +141,22 @@ def _run(case: Case, facts: Preflight, folder: RunFolder, stages: Stages) -> Res
         write_static_fields(mesh, statics, folder)
         for name, vibration in vibrations.items():
             write_vibration_fields(mesh, vibration, sounds[name], folder)
-    notices = (
-        *facts.notices,
-        *mesh.notices,
-        *statics.notices(case),
-        *_singing(statics, vibrations),
-        *chain.from_iterable(_step2_notices(motions[n], vibrations[n], sounds[n]) for n in motions),
-        *diagram_notices,
-        *stages.notices,
-    )
-    reports = {
-        "flow and structure": statics.solver,
-        **{f"modes {name}": vibration.solver for name, vibration in vibrations.items()},
-        **{f"sweep {name}": sound.report for name, sound in sounds.items()},
-    }
-    result = Result(
-        title=case.title,
-        blade=paper_blade(case),
-        static=outcome.static_result(case, statics),
-        configurations={
-            name: outcome.configuration_result(case, vibration, sounds[name], tables[name])
-            for name, vibration in vibrations.items()
-        },
-        moduli=losses.modulus_table(facts.moduli, case.acoustics.band),
-        mesh=outcome.mesh_result(mesh, next(iter(vibrations.values()))),
-        run=outcome.run_record(
-            case.text,
-            run_key(case),
-            stages.laps,
-            [sound.report for sound in sounds.values()],
-            reports,
-            notices,
-        ),
-        campbell=diagram,
+    result = gather(
+        case,
+        facts,
+        mesh,
+        statics,
+        vibrations,
+        sounds,
+        tables,
+        key=run_key(case),
+        laps=stages.laps,
+        moved=tuple(chain.from_iterable(m.notices for m in motions.values() if m is not None)),
+        diagram=diagram,
+        others=(*diagram_notices, *stages.notices),
     )
     folder.save(result)
     return result
-
-
-def paper_blade(case: Case) -> str:
-    """Which of the paper's blades a case stands for: shape, material and flow are those.
-
-    What the paper leaves open (film, excitation, mesh, sphere) may be anything.
-    """
-    for name in PRESETS:
-        family, _, blade = name.partition("-")
-        if family == "paper" and _stated(case) == _stated(Case.parse(preset_text(name))):
-            return blade
-    return ""
-
-
-def _stated(case: Case) -> tuple[object, ...]:
-    """Tell apart what the paper says of its blades."""
-    plain = case.plain()
-    shape = {k: plain["blade"][k] for k in ("hub_radius", "span", "chord", "thickness", "camber")}
-    flow = plain["flow"]["speed"], plain["flow"]["rotation"]
-    return shape, flow, case.material("blade")
 
 
 def _motion(case: Case, mesh: Mesh, statics: Statics, stages: Stages) -> MeshMotion:
@@ -205,19 +164,3 @@ def _motion(case: Case, mesh: Mesh, statics: Statics, stages: Stages) -> MeshMot
     return stages.make(
         "mesh motion", lambda _: solve_mesh_motion(mesh, displacement, case.acoustics.gap)
     )
-
-
-def _singing(statics: Statics, vibrations: dict[str, Vibration]) -> tuple[Notice, ...]:
-    """Shedding of the trailing edge against the wet modes under load, or at rest without them."""
-    if not vibrations:
-        return ()
-    vibration = vibrations.get("C1", next(iter(vibrations.values())))
-    names = vibration.naming.name
-    return tuple(singing(statics.viscous[-1], vibration.modes.frequency, names))
-
-
-def _step2_notices(
-    motion: MeshMotion | None, vibration: Vibration, sound: Sound
-) -> tuple[Notice, ...]:
-    moved = motion.notices if motion is not None else ()
-    return (*moved, *vibration.notices, *sound.notices)

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from quietblade.card import Card, Shown, shortened
 from quietblade.case import Case
 from quietblade.errors import Notice
 from quietblade.linalg import SolverReport
@@ -17,15 +18,15 @@ from quietblade.vibroacoustics.combined import Combined
 from quietblade.vibroacoustics.multipoles import Multipoles
 from quietblade.vibroacoustics.operators import Operators
 from quietblade.vibroacoustics.peaks import Peaks, find_peaks, peaks_on_grid
-from quietblade.vibroacoustics.power import PowerBudget
+from quietblade.vibroacoustics.power import PowerBudget, level
 from quietblade.vibroacoustics.radiation_check import radiation_notices
 from quietblade.vibroacoustics.reduced import Certificate
 from quietblade.vibroacoustics.stepped import SteppedPeaks, stepped_peaks
 from quietblade.vibroacoustics.sweep import solve_response
 
 
-@dataclass(frozen=True, eq=False)
-class Sound:
+@dataclass(frozen=True, eq=False, repr=False)
+class Sound(Shown):
     """Response over frequency and where its power goes.
 
     Attributes
@@ -86,6 +87,20 @@ class Sound:
     certificate: Certificate | None = None
     stepped: SteppedPeaks | None = None
     notices: tuple[Notice, ...] = ()
+
+    def card(self) -> Card:
+        """Peaks of the radiated power."""
+        peaks = self.peaks
+        rows = [
+            tuple(f"{x:.5g}" for x in row)
+            for row in zip(peaks.frequency, level(peaks.power), peaks.width, strict=True)
+        ]
+        low, high = self.frequency[[0, -1]]
+        return Card(
+            f"Sound of {self.name}: {len(self.frequency)} frequencies, {low:g} to {high:g} Hz",
+            shortened(rows),
+            ("peak [Hz]", "level [dB re 1 pW; random loads: 1 pW/Hz]", "half-power width [Hz]"),
+        )
 
 
 def solve_sound(

@@ -2,10 +2,11 @@
 """Step 1 of a case: mesh, structure, and the blade in equilibrium with the flow."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from quietblade.card import Card, Shown
 from quietblade.case import Case
 from quietblade.errors import Notice
 from quietblade.flow import limits
@@ -34,8 +35,8 @@ UNBALANCED = 1e-4
 """Relative difference of reaction and loads beyond which a notice is given."""
 
 
-@dataclass(frozen=True, eq=False)
-class Statics:
+@dataclass(frozen=True, eq=False, repr=False)
+class Statics(Shown):
     """The blade under its own lift.
 
     Attributes
@@ -64,6 +65,20 @@ class Statics:
     stress: StressReport
     viscous: tuple[ViscousFlow, ...]
     solver: SolverReport
+
+    def card(self) -> Card:
+        """Add to the state's rows the largest stresses and strains."""
+        shown = self.state.card()
+        rows = [
+            (
+                f"largest von Mises stress, {name}",
+                f"{1e-6 * region.peaks['von_mises'].value:.4g} MPa",
+            )
+            for name, region in self.stress.regions.items()
+        ]
+        if self.shear is not None:
+            rows.append(("largest shear strain of the film", f"{100.0 * self.shear.maximum:.3f} %"))
+        return replace(shown, rows=(*shown.rows, *rows))
 
     @property
     def blade_shear(self) -> float:

@@ -8,6 +8,7 @@ import ngsolve as ngs
 import numpy as np
 from scipy.sparse import csr_matrix
 
+from quietblade.card import Card, Shown, shortened
 from quietblade.case import Case
 from quietblade.errors import Notice
 from quietblade.geometry import Blade
@@ -66,8 +67,8 @@ class Share:
     pieces: tuple[str, ...] | None = None
 
 
-@dataclass(frozen=True, eq=False)
-class Vibration:
+@dataclass(frozen=True, eq=False, repr=False)
+class Vibration(Shown):
     """The linear problem about C0 or C1, and its modes.
 
     Attributes
@@ -119,6 +120,22 @@ class Vibration:
     sweep: ReducedSweep | None
     solver: SolverReport
     notices: tuple[Notice, ...]
+
+    def card(self) -> Card:
+        """Wet modes by name; with loss and radiation those of the band."""
+        modes = self.modes
+        damped = dict(zip(self.damped.start.tolist(), self.damped.loss_factor, strict=True))
+        rows = [
+            (name, f"{f:.4f}", f"{eta:.3e}", f"{damped[k]:.3e}" if k in damped else "-")
+            for k, (name, f, eta) in enumerate(
+                zip(self.naming.name, modes.frequency, modes.loss_factor, strict=True)
+            )
+        ]
+        return Card(
+            f"Modes of {self.name}: {modes.count} below {modes.highest:g} Hz, none missed",
+            shortened(rows),
+            ("mode", "frequency [Hz]", "loss of the material [1]", "with radiation [1]"),
+        )
 
 
 @dataclass(frozen=True, eq=False)

@@ -61,7 +61,7 @@ class ComplexModes:
 
     @property
     def loss_factor(self) -> FloatArray:
-        """2 Im Omega / Re Omega: relative half-power width; positive for decay.
+        """2 Im Omega / Re Omega: half-power width, positive for decay (theory: S2-16).
 
         For a constant complex stiffness, Omega^2 = omega_0^2 (1 + i eta), it is eta up to eta^3/4.
         """

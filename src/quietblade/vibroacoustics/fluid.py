@@ -4,7 +4,7 @@
 The numbering is that of the uncompressed spaces ``VectorH1(fem, order=2)`` (displacement) and
 ``H1(fem, order=2)`` (velocity potential); both cover the whole mesh, as ``NodalBasis`` does, and
 only the unknowns that touch the water are used.  The fluid's normal points out of the fluid, into
-the blade (theory: S2-5).
+the blade (theory: S2-5, S2-6).
 """
 
 from dataclasses import dataclass

@@ -17,6 +17,7 @@ import numpy as np
 from scipy.sparse import csr_matrix
 from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigsh
 
+from quietblade.card import Card, Shown, shortened
 from quietblade.errors import ConvergenceError, Notice, SolverError
 from quietblade.linalg import Factorization, SparseSolver, make_solver
 from quietblade.typing import AnyArray, FloatArray, IntArray, Progress, silent
@@ -28,8 +29,8 @@ _RIGID = 1e-6  # of the highest s: below it a motion takes no elastic energy
 _NUDGE = 1.0 + 1e-5  # of a shift that cannot be used
 
 
-@dataclass(frozen=True, eq=False)
-class WetModes:
+@dataclass(frozen=True, eq=False, repr=False)
+class WetModes(Shown):
     """Real modes below a frequency, ascending.
 
     Attributes
@@ -64,6 +65,16 @@ class WetModes:
     notices: tuple[Notice, ...] = field(default=())
     losses: Mapping[str, FloatArray] = field(default_factory=dict)
     """Share of each lossy region in ``loss_factor``, (m,)."""
+
+    def card(self) -> Card:
+        """Frequencies and material losses, and below which frequency none is missing."""
+        rows = [
+            (f"{k}", f"{f:.4f}", f"{eta:.3e}")
+            for k, (f, eta) in enumerate(zip(self.frequency, self.loss_factor, strict=True), 1)
+        ]
+        title = f"{self.count} wet modes below {self.highest:g} Hz, none missed"
+        columns = ("mode", "frequency [Hz]", "loss factor of the material [1]")
+        return Card(title, shortened(rows), columns)
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Time-averaged powers of a harmonic response, and their balance (theory: S2-8).
+"""Time-averaged powers of a harmonic response, and their balance (theory: S2-8, S2-10).
 
 Amplitudes are peak values.  A response is an array (..., n) of free unknowns, one row a frequency,
 beside angular frequencies (...,) [rad/s]; powers have the shape of the frequencies [W].
