@@ -83,6 +83,7 @@ def draw_joint_figures(
 def _drawings(folder: RunFolder, result: Result) -> Mapping[str, Drawing]:
     drawings: dict[str, Drawing] = {
         "mesh": lambda: scenes.draw_mesh(folder),
+        "displacement": lambda: scenes.draw_displacement(folder, result),
         "deformed": _deformed(folder, result, None),
         "stress": lambda: scenes.draw_stress(folder, result),
         **_section_drawings([result]),

@@ -1,11 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""All figures of a run, the report, and the commands that make them."""
+"""All figures of a run, and the commands that make and show them."""
 
 import json
-import re
-import shutil
-from base64 import b64decode
-from html.parser import HTMLParser
 from pathlib import Path
 
 import numpy as np
@@ -16,10 +12,9 @@ from quietblade.cli.main import execute
 from quietblade.results.headline import summarise
 from quietblade.results.store import RunFolder
 from quietblade.view.figures import draw_joint_figures
-from quietblade.view.report import render_report
 
 NAMES = {
-    "mesh", "deformed", "mid-section-normalised", "mid-section", "blade-angle",
+    "mesh", "displacement", "deformed", "mid-section-normalised", "mid-section", "blade-angle",
     "lift-coefficient", "convergence", "mode-shapes-C0", "mode-shapes-C1", "sound-power",
     "power-paths", "power-shares", "moduli", "cavitation", "stress", "source-level", "bands",
     "directivity", "directivity-xy", "directivity-xz", "directivity-yz", "multipoles",
@@ -61,50 +56,6 @@ def test_figures_of_several_runs(runs: tuple[RunFolder, ...], tmp_path: Path) ->
     assert fractions[-1] == 1.0
 
 
-class _Links(HTMLParser):
-    def __init__(self) -> None:
-        super().__init__()
-        self.tags: list[str] = []
-        self.sources: list[str] = []
-
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        self.tags.append(tag)
-        self.sources += [v for k, v in attrs if k in {"src", "href"} and v]
-
-
-def test_the_report_needs_nothing_else(
-    drawn: tuple[Path, ...], runs: tuple[RunFolder, ...]
-) -> None:
-    page = render_report(runs[1])
-    links = _Links()
-    links.feed(page)
-    assert len(links.sources) == len(drawn)
-    prefix = "data:image/png;base64,"
-    assert all(source.startswith(prefix) for source in links.sources)
-    pictures = {b64decode(source.removeprefix(prefix)) for source in links.sources}
-    assert pictures == {file.read_bytes() for file in drawn}
-    assert "script" not in links.tags
-    assert "url(" not in page
-    # neither the case file nor the digits of the pictures, in which any four letters may occur
-    own = re.sub(r"<pre>.*?</pre>|base64,[^\"]*", "", page, flags=re.DOTALL)
-    assert "http" not in own
-    for part in ("The paper&#x27;s composite blade", "größe", "1182", "ngsolve"):
-        assert part in page, part
-
-
-def test_the_case_text_cannot_break_the_report(
-    drawn: tuple[Path, ...], runs: tuple[RunFolder, ...], tmp_path: Path
-) -> None:
-    from tests.results.synthetic import make_result  # noqa: PLC0415  # not the shared run
-
-    copy = RunFolder(tmp_path / "copy")
-    shutil.copytree(runs[1].root, copy.root)
-    copy.save(make_result("composite", case_text="# $title <script>alert(1)</script>"))
-    page = render_report(copy)
-    assert "<script>" not in page
-    assert "# $title &lt;script&gt;" in page
-
-
 def test_show(runs: tuple[RunFolder, ...], capsys: pytest.CaptureFixture[str]) -> None:
     assert execute(["show", str(runs[0].root)]) == 0
     shown = capsys.readouterr().out
@@ -122,18 +73,6 @@ def test_compare(runs: tuple[RunFolder, ...], capsys: pytest.CaptureFixture[str]
     assert found["C0 T2 frequency"]["change"] == pytest.approx(4.2)
     assert execute(["compare", first, second]) == 0
     assert "C0 T2 frequency" in capsys.readouterr().out
-
-
-def test_report_is_written(
-    drawn: tuple[Path, ...],
-    runs: tuple[RunFolder, ...],
-    tmp_path: Path,
-    capsys: pytest.CaptureFixture[str],
-) -> None:
-    file = tmp_path / "a.html"
-    assert execute(["report", str(runs[1].root), "--out", str(file)]) == 0
-    assert "a.html" in capsys.readouterr().out
-    assert file.read_text(encoding="utf-8") == render_report(runs[1])
 
 
 def test_joint_figures_need_two_runs(
