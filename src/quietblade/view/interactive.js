@@ -216,6 +216,7 @@
 
   let span, shows;
   try {
+    if (!document.createElement("canvas").getContext("webgl")) throw new Error("no WebGL here");
     const library = document.createElement("script");
     library.textContent = await (await unpacked("view3d-library")).text();
     document.head.append(library);
