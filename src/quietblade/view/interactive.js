@@ -101,8 +101,8 @@
     }
     element("view3d-told").textContent =
       `${show.body.configuration}, mode ${show.name}: ${show.frequency.toFixed(2)} Hz, loss factor ` +
-      `${show.loss.toExponential(1)}. A mode has no size of its own: its largest displacement is drawn ` +
-      `as ${mm.toFixed(0)} mm (${(100 * mm / span).toFixed(0)} % of the span), in slow motion.`;
+      `${show.loss.toExponential(1)}. A mode has no size of its own: its largest displacement is ` +
+      `drawn as ${mm.toFixed(0)} mm (${(100 * mm / span).toFixed(0)} % of the span), in slow motion.`;
   }
 
   /* Axes that hold every phase, with one scale. */
@@ -111,7 +111,10 @@
     const all = phases.map((phase) => moved(show, size(), phase)).concat([atRest()]);
     const ranges = [0, 1, 2].map((a) => {
       let low = Infinity, high = -Infinity;
-      for (const axes of all) for (const x of axes[a]) { low = Math.min(low, x); high = Math.max(high, x); }
+      for (const x of all.flatMap((axes) => [...axes[a]])) {
+        low = Math.min(low, x);
+        high = Math.max(high, x);
+      }
       const margin = 0.02 * span;
       return [low - margin, high + margin];
     });
@@ -144,7 +147,7 @@
   async function choose() {
     show = shows.find((candidate) => candidate.key === controls.motion.value);
     controls.size.value = steady() ? 0.5 : USUAL / MOST;
-    controls.size.title = steady() ? "times the true displacement" : "largest displacement over span";
+    controls.size.title = steady() ? "against the true displacement" : "against the span";
     const rest = atRest(), now = moved(show, size(), 0), { blade, film } = show.body;
     const transparent = controls.film.checked && film.i.length > 0;
     const axes = ([x, y, z]) => ({ x, y, z });
@@ -154,10 +157,12 @@
       { ...common, ...axes(rest), ...blade, color: "#8a949c", opacity: 0.18,
         visible: controls.rest.checked },
       { ...common, ...axes(now), ...blade, intensity: amplitude(show), colorscale: "Viridis",
-        cmin: 0, cmax: steady() ? show.largest : 1, opacity: transparent ? 0.3 : 1,
+        cmin: 0, cmax: steady() ? show.largest : 1, opacity: transparent ? 0.15 : 1,
         colorbar: { title: { text: steady() ? "Displacement [mm]"
           : "Amplitude over<br>the largest [–]" }, thickness: 14, len: 0.7 } },
-      { ...common, ...axes(now), ...film, color: "#E69F00", visible: transparent },
+      // without shades, as its faces are closer than the depth of a browser tells apart
+      { ...common, ...axes(now), ...film, color: "#E69F00", visible: transparent,
+        lighting: { ambient: 1, diffuse: 0, specular: 0 } },
     ];
     controls.film.disabled = film.i.length === 0;
     const axis = (title) => ({ title: { text: `${title} [mm]` }, backgroundcolor: "#f5f6f7",
@@ -174,7 +179,6 @@
       plotlyServerURL: "", // nothing of a report goes to any server
       modeBarButtons: [["toImage", "zoom3d", "pan3d", "orbitRotation"]] });
     await Plotly.relayout(plot, frame());
-    history.replaceState(null, "", `#${show.key}`);
     tell();
   }
 
@@ -193,11 +197,16 @@
       groups[name].append(option);
     }
     const wanted = decodeURIComponent(location.hash.slice(1));
-    if (shows.some((each) => each.key === wanted)) controls.motion.value = wanted;
+    if (!shows.some((each) => each.key === wanted)) return;
+    controls.motion.value = wanted;
+    box.scrollIntoView();
   }
 
   function connect() {
-    controls.motion.addEventListener("change", choose);
+    controls.motion.addEventListener("change", () => {
+      history.replaceState(null, "", `#${controls.motion.value}`); // a link to this motion
+      choose();
+    });
     controls.film.addEventListener("change", choose);
     controls.rest.addEventListener("change", () =>
       Plotly.restyle(plot, { visible: controls.rest.checked }, [0]));
