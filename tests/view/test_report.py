@@ -27,6 +27,7 @@ from quietblade.results.table import Table
 from quietblade.results.tables import summary_tables
 from quietblade.view.report import render_report
 from quietblade.view.report_order import SECTIONS, VIEW
+from quietblade.view.report_pdf import PdfError, require_pdf
 from tests.results.synthetic import make_result, with_static
 from tests.view.test_figures import NAMES
 
@@ -219,7 +220,10 @@ def test_the_case_is_told_in_words_as_it_was_run(tmp_path: Path) -> None:
 
 
 def test_pdf(run: RunFolder) -> None:
-    pytest.importorskip("weasyprint", reason="the optional WeasyPrint is not installed")
+    try:
+        require_pdf()
+    except PdfError as error:
+        pytest.skip(str(error))
     assert execute(["report", str(run.root), "--pdf", "--quiet"]) == 0
     data = (run.root / "report.pdf").read_bytes()
     assert data.startswith(b"%PDF-")
