@@ -128,6 +128,16 @@ def test_what_a_user_adds_is_kept(run: RunFolder, tmp_path: Path) -> None:
     assert 'id="more"' in render_report(copy, make_result("composite"), interactive=False)
 
 
+def test_a_report_without_sound_links_only_to_what_it_has(run: RunFolder, tmp_path: Path) -> None:
+    few = RunFolder(tmp_path)
+    few.figures.mkdir()
+    shutil.copy(run.figures / f"{VIEW}.png", few.figures)
+    still = replace(make_result("composite"), configurations={})
+    page = _Page(render_report(few, still, interactive=False))
+    assert {target[1:] for target in page.targets} <= set(page.places)
+    assert len(page.targets) >= 3
+
+
 def test_the_case_text_cannot_break_the_report(run: RunFolder) -> None:
     result = make_result("composite", case_text="# $title <script>alert(1)</script>")
     result = replace(result, title="</script><script>alert(2)</script>")

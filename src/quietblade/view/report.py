@@ -61,18 +61,19 @@ def render_report(
     given |= {table.title: table for table in evidence_tables(result)}
     cited = citation_table(result)
     given[cited.title] = cited
-    body = [_answers(answers(summary))]
+    parts = []
     for section in (*SECTIONS, _rest(given, figures)):
         own = words if section.title == CASE else ()
-        body.append(_section(section, (*own, *_chosen(section, given)), figures, view))
-    body.append(f"<h3>Case file</h3>\n<pre>{escape(result.run.case_text)}</pre>")
+        parts.append(_section(section, (*own, *_chosen(section, given)), figures, view))
+    parts.append(f"<h3>Case file</h3>\n<pre>{escape(result.run.case_text)}</pre>")
+    body = "\n".join(part for part in parts if part)
     return page.substitute(
         policy=POLICY,
         title=escape(summary.title),
         version=escape(summary.run.code_version),
         created=escape(summary.run.created),
         platform=escape(summary.run.platform),
-        body="\n".join(part for part in body if part),
+        body=f"{_answers(answers(summary), body)}\n{body}",
     )
 
 
@@ -83,13 +84,16 @@ def _drawn(folder: RunFolder, progress: Progress) -> dict[str, Path]:
     return figures
 
 
-def _answers(table: Table) -> str:
-    anchors = [_anchor(TRUST if name == QUESTIONS[-1] else name) for name, _ in table.rows]
-    rows = "".join(
-        f'<tr><td><a href="#{anchor}">{escape(question)}</a></td><td>{escape(text)}</td></tr>'
-        for anchor, (question, text) in zip(anchors, table.rows, strict=True)
-    )
-    return f'<h2>{escape(table.title)}</h2>\n<table class="answers">{rows}</table>'
+def _answers(table: Table, body: str) -> str:
+    """Answers, each with a link to its section if the body has one."""
+    rows = []
+    for question, text in table.rows:
+        title = TRUST if question == QUESTIONS[-1] else question
+        told = escape(question)
+        if _heading(title) in body:
+            told = f'<a href="#{_anchor(title)}">{told}</a>'
+        rows.append(f"<tr><td>{told}</td><td>{escape(text)}</td></tr>")
+    return f'<h2>{escape(table.title)}</h2>\n<table class="answers">{"".join(rows)}</table>'
 
 
 def _chosen(section: Section, tables: Mapping[str, Table]) -> Iterable[Table]:
