@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """``quietblade plot``: draw the figures of runs from their files."""
 
+from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
@@ -8,6 +9,14 @@ import typer
 
 from quietblade.cli.common import ExitCode, console
 from quietblade.cli.progress import ProgressDisplay
+
+
+class Format(StrEnum):
+    """Kind of the files of figures."""
+
+    PNG = "png"
+    PDF = "pdf"
+    SVG = "svg"
 
 
 def plot(
@@ -21,22 +30,47 @@ def plot(
         ),
     ] = None,
     joint: Annotated[bool, typer.Option("--joint", help="Draw the joint figures only.")] = False,
+    formats: Annotated[
+        list[Format] | None,
+        typer.Option(
+            "--format",
+            "-f",
+            help="Kind of files, may be repeated; default png.",
+            show_default=False,
+        ),
+    ] = None,
+    animate: Annotated[
+        bool,
+        typer.Option(
+            "--animate", help="Draw moving pictures (GIF) of deformation and modes instead."
+        ),
+    ] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Show errors only.")] = False,
 ) -> ExitCode:
     """Draw the figures of runs again; nothing is computed."""
     from quietblade.results.store import RunFolder  # noqa: PLC0415  # help must stay fast
+    from quietblade.view.animation import draw_animations  # noqa: PLC0415
     from quietblade.view.figures import draw_figures, draw_joint_figures  # noqa: PLC0415
 
     if joint and len(directories) < 2:
         raise typer.BadParameter("--joint needs the folders of at least two runs")
+    if animate and (joint or formats):
+        raise typer.BadParameter(
+            "--animate draws single runs as GIF files: no --joint, no --format"
+        )
     folders = [RunFolder(directory) for directory in directories]
     drawn: list[Path] = []
     with ProgressDisplay(console, quiet=quiet) as progress:
-        for folder in () if joint else folders:
-            drawn += draw_figures(folder, progress)
-        if len(folders) > 1:
-            together = out or directories[0].parent / "figures"
-            drawn += draw_joint_figures(folders, together, progress)
+        if animate:
+            for folder in folders:
+                drawn += draw_animations(folder, folder.load(), progress)
+        else:
+            kinds = formats or [Format.PNG]
+            for folder in () if joint else folders:
+                drawn += draw_figures(folder, progress, kinds)
+            if len(folders) > 1:
+                together = out or directories[0].parent / "figures"
+                drawn += draw_joint_figures(folders, together, progress, kinds)
     if not quiet:
         for place in dict.fromkeys(file.parent for file in drawn):
             console.print(f"pictures: {place}", soft_wrap=True)

@@ -1,31 +1,88 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""``quietblade report``: one HTML file to hand on."""
+"""``quietblade report``: one HTML file to hand on, or a PDF."""
 
+from ast import literal_eval
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from quietblade.cli.common import ExitCode, console
 from quietblade.cli.progress import ProgressDisplay
 
+if TYPE_CHECKING:
+    from quietblade.results.model import RunRecord
+    from quietblade.results.table import Table
+
 
 def report(
     directory: Annotated[Path, typer.Argument(help="Folder of a run.")],
     out: Annotated[
-        Path | None, typer.Option("--out", "-o", help="File; default report.html in the folder.")
+        Path | None,
+        typer.Option("--out", "-o", help="File; default report.html (or .pdf) in the folder."),
     ] = None,
+    plain: Annotated[
+        bool, typer.Option("--plain", "--no-3d", help="Without the interactive 3-D view.")
+    ] = False,
+    pdf: Annotated[
+        bool, typer.Option("--pdf", help="Write a PDF instead; needs the extra quietblade[pdf].")
+    ] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Show errors only.")] = False,
 ) -> ExitCode:
-    """Write a report of a run as one self-contained HTML file."""
-    from quietblade.results.files import write_text  # noqa: PLC0415  # help must stay fast
+    """Write a report of a run as one self-contained HTML file, or as a PDF."""
+    from quietblade.results.files import replacing, write_text  # noqa: PLC0415  # help stays fast
     from quietblade.results.store import RunFolder  # noqa: PLC0415
     from quietblade.view.report import render_report  # noqa: PLC0415
+    from quietblade.view.report_pdf import pdf_of, require_pdf  # noqa: PLC0415
 
-    file = out or directory / "report.html"
+    if pdf:
+        require_pdf()  # before anything is drawn
+    folder = RunFolder(directory)
+    file = out or directory / ("report.pdf" if pdf else "report.html")
+    result = folder.load()
     with ProgressDisplay(console, quiet=quiet) as progress:
-        page = render_report(RunFolder(directory), progress)
-    write_text(file, page)
+        page = render_report(
+            folder,
+            result,
+            progress,
+            words=case_words(folder.case, result.run),
+            interactive=not (plain or pdf),
+        )
+        if pdf:
+            progress("pdf", None, "pages")
+            with replacing(file) as temporary:
+                temporary.write_bytes(pdf_of(page))
+        else:
+            write_text(file, page)
     if not quiet:
-        console.print(f"report: {file}", soft_wrap=True)
+        console.print(f"report: {file} ({file.stat().st_size / 1e6:.1f} MB)", soft_wrap=True)
     return ExitCode.DONE
+
+
+def case_words(file: Path, run: "RunRecord") -> tuple["Table", ...]:
+    """Say the case of a run in words, as ``check`` does, or why that cannot be."""
+    from quietblade.case import Case, InvalidCaseError  # noqa: PLC0415
+    from quietblade.cli.describe import case_tables  # noqa: PLC0415
+    from quietblade.results.table import Table  # noqa: PLC0415
+    from quietblade.study.preflight import preflight  # noqa: PLC0415
+    from quietblade.study.run import run_key  # noqa: PLC0415
+
+    try:
+        case = Case.load(file).varied(_changes(run.case_text))
+        if run_key(case, run.code_version) == run.content_key:
+            told = case_tables(case, preflight(case))
+            return tuple(Table(title, (), tuple(rows)) for title, rows in told)
+        why = "it is not the case of this result; the text of the result's own is at the end"
+    except InvalidCaseError as error:
+        why = str(error)  # for instance, a file beside the case is gone
+    return (Table("In words", (), ((f"{file.name} cannot be told in words", why),)),)
+
+
+def _changes(text: str) -> dict[str, Any]:
+    """Read back what a study or a script has changed: comments that `Case.varied` leaves."""
+    lines = [line.removeprefix(_MARK) for line in text.splitlines() if line.startswith(_MARK)]
+    pairs = (line.partition(" = ") for line in lines)
+    return {key: literal_eval(value) for key, _, value in pairs}
+
+
+_MARK = "# changed in memory: "

@@ -38,9 +38,9 @@ from quietblade.study.vibration import frequencies, solve_vibration
 from quietblade.typing import Progress, silent
 
 
-def run_key(case: Case) -> str:
+def run_key(case: Case, version: str = __version__) -> str:
     """Key of a result: the content of the case and the version of the code."""
-    return hashlib.sha256(f"{case.content_key()} {__version__}".encode()).hexdigest()
+    return hashlib.sha256(f"{case.content_key()} {version}".encode()).hexdigest()
 
 
 def finished(case: Case, folder: RunFolder) -> Result | None:

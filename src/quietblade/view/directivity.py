@@ -81,7 +81,7 @@ def _draw_polar_panel(ax: Any, panel: _Panel, result: Result, plane: str) -> Non
     for label in ax.get_yticklabels():
         label.set_bbox({"facecolor": "white", "alpha": 0.8, "pad": 0.5, "linewidth": 0.0})
     ax.tick_params(axis="x", labelsize=7.5, pad=0.0)
-    ax.set_ylabel("Level [dB]", fontsize=6.5, labelpad=16.0)
+    ax.set_ylabel("Level [dB re loudest]", fontsize=6.5, labelpad=16.0)
     told = (_told(result.configurations[name], name, row) for name, row in panel.rows.items())
     ax.set_title("\n".join([panel.name, *told]), fontsize=7.5, loc="center")
 
@@ -116,7 +116,7 @@ def draw_balloons(result: Result) -> Figure:
             )
     colours = ScalarMappable(norm, SEQUENTIAL)
     bar = figure.colorbar(colours, ax=figure.axes, shrink=0.6, pad=0.02)
-    bar.set_label("Level against the loudest direction, also the radius [dB]")
+    bar.set_label("Level, also the radius [dB re loudest direction]")
     figure.suptitle(f"Directivity: {result.title}\n{_note(result)}", x=0.01, ha="left",
                     fontsize=8.0)  # fmt: skip
     return figure

@@ -49,7 +49,7 @@ def draw_efficiency(result: Result) -> Figure:
                 color=CONFIGURATION[name].color, markersize=3.5)  # fmt: skip
         ax.set_xlim(far.frequency[0], far.frequency[-1])
     notes = dict.fromkeys(radiation_note(c) for c in result.configurations.values())
-    ax.set(xlabel=_FREQUENCY, ylabel="Radiation efficiency σ [1]")
+    ax.set(xlabel=_FREQUENCY, ylabel="Radiation efficiency σ [–]")
     figure.suptitle(f"Radiation efficiency: {result.title}", x=0.01, ha="left", fontsize=9.0)
     figure.legend(
         *ax.get_legend_handles_labels(), loc="outside lower center", ncols=2,

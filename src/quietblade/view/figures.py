@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""All figures of a run, and those that show several runs together, as PNG files."""
+"""All figures of a run, and those that show several runs together, as files."""
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache, partial
@@ -28,7 +28,9 @@ from quietblade.view.style import DPI
 Drawing = Callable[[], Figure]
 
 
-def draw_figures(folder: RunFolder, progress: Progress = silent) -> tuple[Path, ...]:
+def draw_figures(
+    folder: RunFolder, progress: Progress = silent, formats: Sequence[str] = ("png",)
+) -> tuple[Path, ...]:
     """Draw every figure of a run into its folder ``figures``.
 
     Parameters
@@ -36,6 +38,8 @@ def draw_figures(folder: RunFolder, progress: Progress = silent) -> tuple[Path, 
     folder : RunFolder
         A finished run; its result and its VTU files are read, nothing is computed.
     progress : callable
+    formats : sequence of str
+        Endings of the files: ``png``, and ``pdf`` or ``svg`` for curves as lines.
 
     Returns
     -------
@@ -47,11 +51,14 @@ def draw_figures(folder: RunFolder, progress: Progress = silent) -> tuple[Path, 
     ResultError
         The result or one of its fields is missing.
     """
-    return _save(folder.figures, _drawings(folder, folder.load()), progress)
+    return _save(folder.figures, _drawings(folder, folder.load()), progress, formats)
 
 
 def draw_joint_figures(
-    folders: Sequence[RunFolder], out: Path, progress: Progress = silent
+    folders: Sequence[RunFolder],
+    out: Path,
+    progress: Progress = silent,
+    formats: Sequence[str] = ("png",),
 ) -> tuple[Path, ...]:
     """Draw the figures that compare several runs.
 
@@ -62,6 +69,8 @@ def draw_joint_figures(
     out : Path
         Folder to draw into.
     progress : callable
+    formats : sequence of str
+        Endings of the files: ``png``, and ``pdf`` or ``svg`` for curves as lines.
 
     Returns
     -------
@@ -77,12 +86,13 @@ def draw_joint_figures(
     }
     for folder, result in zip(folders, results, strict=True):
         drawings[f"deformed-{folder.root.resolve().name}"] = _deformed(folder, result, largest)
-    return _save(out, drawings, progress)
+    return _save(out, drawings, progress, formats)
 
 
 def _drawings(folder: RunFolder, result: Result) -> Mapping[str, Drawing]:
     drawings: dict[str, Drawing] = {
         "mesh": lambda: scenes.draw_mesh(folder),
+        "displacement": lambda: scenes.draw_displacement(folder, result),
         "deformed": _deformed(folder, result, None),
         "stress": lambda: scenes.draw_stress(folder, result),
         **_section_drawings([result]),
@@ -139,13 +149,17 @@ def _mode_shapes(
     return lambda: scenes.draw_mode_shapes(result, name, pictures(name))
 
 
-def _save(out: Path, drawings: Mapping[str, Drawing], progress: Progress) -> tuple[Path, ...]:
+def _save(
+    out: Path, drawings: Mapping[str, Drawing], progress: Progress, formats: Sequence[str]
+) -> tuple[Path, ...]:
     files = []
     for done, (name, draw) in enumerate(drawings.items()):
         progress("figures", done / len(drawings), name)
-        file = out / f"{name}.png"
-        with replacing(file) as temporary:
-            draw().savefig(temporary, dpi=DPI)
-        files.append(file)
+        figure = draw()
+        for kind in formats:
+            file = out / f"{name}.{kind}"
+            with replacing(file) as temporary:
+                figure.savefig(temporary, dpi=DPI)
+            files.append(file)
     progress("figures", 1.0, f"{len(files)} files in {out}")
     return tuple(files)

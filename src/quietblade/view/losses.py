@@ -91,9 +91,9 @@ def draw_moduli(result: Result) -> Figure:
         ax.axvspan(*table.band, color="0.92", zorder=0)
         ax.set(xscale="log", xlabel=_FREQUENCY, xlim=table.frequency[[0, -1]])
         _plain_numbers(ax.xaxis)
-    left.set(yscale="log", ylabel=f"Storage modulus {'[MPa]' if absolute else 'over static [1]'}")
+    left.set(yscale="log", ylabel=f"Storage modulus {'[MPa]' if absolute else 'over static [–]'}")
     _plain_numbers(left.yaxis)
-    right.set(ylabel="Loss factor [1]")
+    right.set(ylabel="Loss factor [–]")
     right.set_ylim(bottom=0.0)
     figure.legend(
         *left.get_legend_handles_labels(),

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Pictures of solids, drawn off screen."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
@@ -97,12 +97,31 @@ class Stage:
         -------
         (rows, columns, 3) uint8 array
         """
+        (image,) = self.pictures(view, bounds, [None])
+        return image
+
+    def pictures(
+        self, view: View, bounds: Sequence[float] | None, changes: Iterable[object]
+    ) -> list[AnyArray]:
+        """Take one picture after each of some changes, with the camera in one place.
+
+        Parameters
+        ----------
+        view, bounds
+            As for `picture`.
+        changes : iterable
+            Whatever changes the added surfaces when its next item is taken.
+        """
+        images = []
         with _quiet_vtk():
             self.plotter.view_vector(view.place, viewup=view.up)
             self.plotter.reset_camera(bounds=bounds)
-            image = self.plotter.screenshot(None, return_img=True)
+            for _ in changes:
+                self.plotter.render()
+                image = self.plotter.screenshot(None, return_img=True)
+                images.append(np.asarray(image))
             self.plotter.close()
-        return np.asarray(image)
+        return images
 
 
 def cropped(images: Sequence[AnyArray]) -> list[AnyArray]:

@@ -2,11 +2,18 @@
 """A report of a run as one HTML file that needs no network."""
 
 from base64 import b64encode
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Mapping, Sequence
 from html import escape
+from importlib.resources import files
+from io import BytesIO
 from pathlib import Path
 from string import Template
 
+from PIL import Image
+
+from quietblade.results.answers import QUESTIONS, answers
+from quietblade.results.citations import citation_table
+from quietblade.results.evidence import evidence_tables
 from quietblade.results.headline import summarise
 from quietblade.results.model import Result
 from quietblade.results.store import RunFolder
@@ -14,112 +21,121 @@ from quietblade.results.table import Table
 from quietblade.results.tables import summary_tables
 from quietblade.typing import Progress, silent
 from quietblade.view.figures import draw_figures
-
-_PAGE = Template("""<!DOCTYPE html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<title>$title</title>
-<style>
-body { font: 15px/1.5 system-ui, "DejaVu Sans", sans-serif; color: #1d2328; max-width: 62rem;
-  margin: 2rem auto; padding: 0 1rem; }
-h1 { font-size: 1.6rem; } h2 { font-size: 1.15rem; margin-top: 2.2rem; }
-table { border-collapse: collapse; font-size: 0.9rem; font-variant-numeric: tabular-nums; }
-th, td { text-align: left; vertical-align: top; padding: 0.2rem 0.9rem 0.2rem 0;
-  border-bottom: 1px solid #e3e6e8; }
-td.agrees, td.differs, td.not-judged { white-space: nowrap; }
-td.agrees { color: #00694d; } td.differs { color: #a63c00; font-weight: 600; }
-figure { margin: 1.2rem 0; } figure img { max-width: 100%; height: auto; }
-figcaption, .note { color: #5a646c; font-size: 0.9rem; }
-pre { background: #f5f6f7; padding: 0.8rem; overflow-x: auto; font-size: 0.85rem; }
-.scroll { overflow-x: auto; }
-@media print { body { margin: 0; max-width: none; } figure { break-inside: avoid; } }
-</style>
-</head>
-<body>
-<h1>$title</h1>
-<p class="note">quietblade $version, $created, on $platform</p>
-$body
-</body>
-</html>
-""")
-
-_CAPTIONS = {
-    "mesh": "Blade, film and mesh.",
-    "deformed": "The blade under its own lift and at rest, with the shear strain of the film.",
-    "stress": "Von Mises stress on the deformed blade.",
-    "mid-section-normalised": "The mid section over its chord: what the deformation does to its "
-    "camber.",
-    "mid-section": "The mid section in space: deflection and blade angle.",
-    "blade-angle": "Blade angle along the span.",
-    "lift-coefficient": "Lift coefficient along the span: rigid blade, rigid blade's load applied "
-    "once, and equilibrium.",
-    "cavitation": "Suction along the span; cavitation begins where it reaches the cavitation "
-    "number of the section at the top of its turn.",
-    "convergence": "How the loop between flow and structure converged.",
-    "sound-power": "Radiated sound power, with the wet modes that make the peaks.",
-    "source-level": "Source level, the mean over all directions.",
-    "bands": "Levels of the mean power in frequency bands, with the limits.",
-    "directivity-xy": "Directivity in the plane of rotor axis (x) and y, seen from the tip.",
-    "directivity-xz": "Directivity in the plane of rotor axis (x) and span (z).",
-    "directivity-yz": "Directivity in the plane of the rotor.",
-    "directivity": "Sound in all directions at the loudest peaks.",
-    "multipoles": "Shares of the multipoles in the radiated power.",
-    "radiation-efficiency": "Radiated power over that of a plane wave with the same motion.",
-    "power-paths": "Where the injected power goes; the multipoles do not depend on the waves that "
-    "the radiation condition reflects.",
-    "power-shares": "Where the injected power goes, in shares; dotted: peaks of the sound power.",
-    "moduli": "Complex moduli of the materials over frequency.",
-    "power-by-load": "Radiated sound power of each load alone, and of all together.",
-    "mobility": "Drive-point mobility of each load.",
-    "power-per-force": "Radiated power of each load alone per mean square force.",
-    "root-forces": "Force and moment of the blade on its root, and the power that a shaft in place "
-    "of the clamp takes, beside the radiated power.",
-    "mode-shapes-C0": "Wet modes at rest.",
-    "mode-shapes-C1": "Wet modes under load.",
-    "campbell": "Wet modes under load over the speed of the shaft, with the blade rate's multiples "
-    "as rays.",
-}
+from quietblade.view.interactive import POLICY, interactive_view
+from quietblade.view.report_order import CASE, SECTIONS, TRUST, VIEW, Section
 
 
-def render_report(folder: RunFolder, progress: Progress = silent) -> str:
+def render_report(
+    folder: RunFolder,
+    result: Result,
+    progress: Progress = silent,
+    *,
+    words: Sequence[Table] = (),
+    interactive: bool = True,
+) -> str:
     """Report of a run as HTML; missing figures are drawn first.
+
+    Parameters
+    ----------
+    folder : RunFolder
+        A finished run, for its figures and fields.
+    result : Result
+        What it holds.
+    progress : callable
+    words : sequence of Table
+        The case in words.
+    interactive : bool
+        Whether the page carries the view of the moving blade, about 3 MB; without it the page has
+        no script at all.
 
     Raises
     ------
     ResultError
-        The result or one of its fields is missing.
+        A file of fields is missing.
     """
-    result = folder.load()
-    figures = {file.stem: file for file in folder.figures.glob("*.png")}
-    if not figures:
-        figures = {file.stem: file for file in draw_figures(folder, progress)}
+    figures = _drawn(folder, progress)
+    view = interactive_view(folder, result) if interactive else ""
     summary = summarise(result)
-    return _PAGE.substitute(
+    page = Template(files("quietblade.view").joinpath("report.html").read_text(encoding="utf-8"))
+    given = {table.title: table for table in summary_tables(summary)}
+    given |= {table.title: table for table in evidence_tables(result)}
+    cited = citation_table(result)
+    given[cited.title] = cited
+    parts = []
+    for section in (*SECTIONS, _rest(given, figures)):
+        own = words if section.title == CASE else ()
+        parts.append(_section(section, (*own, *_chosen(section, given)), figures, view))
+    parts.append(f"<h3>Case file</h3>\n<pre>{escape(result.run.case_text)}</pre>")
+    body = "\n".join(part for part in parts if part)
+    return page.substitute(
+        policy=POLICY,
         title=escape(summary.title),
         version=escape(summary.run.code_version),
         created=escape(summary.run.created),
         platform=escape(summary.run.platform),
-        body="\n".join(_body(result, summary_tables(summary), figures)),
+        body=f"{_answers(answers(summary), body)}\n{body}",
     )
 
 
-def _body(result: Result, tables: Iterable[Table], figures: dict[str, Path]) -> Iterator[str]:
-    for table in tables:
-        yield _table(table)
-    yield "<h2>Figures</h2>"
-    # those with a caption in its order, then whatever else the folder holds
-    for name in (*_CAPTIONS, *sorted(set(figures) - set(_CAPTIONS))):
-        if name in figures:
-            yield _figure(figures[name], _CAPTIONS.get(name, name))
-    packages = zip(result.run.packages.name, result.run.packages.version, strict=True)
-    yield _table(Table("Packages", (), tuple(packages)))
-    yield f"<h2>Case file</h2>\n<pre>{escape(result.run.case_text)}</pre>"
+def _drawn(folder: RunFolder, progress: Progress) -> dict[str, Path]:
+    figures = {file.stem: file for file in folder.figures.glob("*.png")}
+    if VIEW not in figures:
+        figures = {file.stem: file for file in draw_figures(folder, progress)}
+    return figures
 
 
-def _table(table: Table) -> str:
-    lines = [f"<h2>{escape(table.title)}</h2>", '<div class="scroll"><table>']
+def _answers(table: Table, body: str) -> str:
+    """Answers, each with a link to its section if the body has one."""
+    rows = []
+    for question, text in table.rows:
+        title = TRUST if question == QUESTIONS[-1] else question
+        told = escape(question)
+        if _heading(title) in body:
+            told = f'<a href="#{_anchor(title)}">{told}</a>'
+        rows.append(f"<tr><td>{told}</td><td>{escape(text)}</td></tr>")
+    return f'<h2>{escape(table.title)}</h2>\n<table class="answers">{"".join(rows)}</table>'
+
+
+def _chosen(section: Section, tables: Mapping[str, Table]) -> Iterable[Table]:
+    return (tables[title] for title in section.tables if title in tables)
+
+
+def _section(
+    section: Section, tables: Sequence[Table], figures: Mapping[str, Path], view: str
+) -> str:
+    pictures = [
+        _figure(figures[name], caption, view if name == VIEW else "")
+        for name, caption in section.figures.items()
+        if name in figures
+    ]
+    # the blade itself says first what its tables say in full
+    first = 1 if VIEW in section.figures else 0
+    parts = [*pictures[:first], *(_table(t, section.title) for t in tables), *pictures[first:]]
+    return "\n".join([_heading(section.title), *parts]) if parts else ""
+
+
+def _rest(tables: Iterable[str], figures: Iterable[str]) -> Section:
+    """Gather what has no place in the order, for instance figures that a user has added."""
+    known_tables = {title for section in SECTIONS for title in section.tables}
+    known_figures = {name for section in SECTIONS for name in section.figures}
+    return Section(
+        "More",
+        tuple(title for title in tables if title not in known_tables),
+        {name: name for name in sorted(set(figures) - known_figures)},
+    )
+
+
+def _heading(title: str) -> str:
+    return f'<h2 id="{_anchor(title)}">{escape(title)}</h2>'
+
+
+def _anchor(title: str) -> str:
+    return "".join(c if c.isalnum() else "-" for c in title.lower()).strip("-")
+
+
+def _table(table: Table, section: str) -> str:
+    heading = f"<h3>{escape(table.title)}</h3>" if table.title != section else ""
+    lines = [heading, '<div class="scroll"><table>']
     if table.columns:
         lines.append(_row("th", table.columns))
     lines += [_row("td", row) for row in table.rows]
@@ -139,9 +155,20 @@ def _cell(tag: str, text: str) -> str:
     return f"<{tag}{kind}>{escape(text)}</{tag}>"
 
 
-def _figure(file: Path, caption: str) -> str:
-    data = b64encode(file.read_bytes()).decode("ascii")
-    return (
-        f'<figure><img src="data:image/png;base64,{data}" alt="{escape(caption)}">'
-        f"<figcaption>{escape(caption)}</figcaption></figure>"
+def _figure(file: Path, caption: str, view: str) -> str:
+    still = (
+        f'<img src="data:image/webp;base64,{_picture(file)}" alt="{escape(caption)}">'
+        f"<figcaption>{escape(caption)}</figcaption>"
     )
+    if not view:
+        return f"<figure>{still}</figure>"
+    # shown on paper, and where the browser cannot draw the view
+    return f'<figure>{view}<div id="view3d-still">{still}</div></figure>'
+
+
+def _picture(file: Path) -> str:
+    """Picture in base64, pixel for pixel in about half the bytes of its PNG file."""
+    packed = BytesIO()
+    with Image.open(file) as image:
+        image.convert("RGB").save(packed, "WEBP", lossless=True, method=1, quality=20)
+    return b64encode(packed.getvalue()).decode("ascii")

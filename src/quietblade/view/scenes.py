@@ -144,6 +144,30 @@ def _reach(folder: RunFolder) -> tuple[float, ...]:
 
 
 @styled
+def draw_displacement(folder: RunFolder, result: Result) -> Figure:
+    """Deformed blade coloured by its displacement, and the blade at rest."""
+    rigid = solid_of(read_fields(folder.static_fields))
+    displacement = field_values(rigid, "displacement")
+    deformed = moved(rigid, displacement)
+    millimetre = 1e3 * np.linalg.norm(displacement, axis=1)
+    deformed.point_data["millimetre"] = millimetre
+    limits = (0.0, float(millimetre.max()) or 1.0)
+    stage = Stage((2400, 1500))
+    stage.add(curved_surface(rigid), color=_BLADE, opacity=0.35)
+    stage.add(sharp_edges(rigid), color=_LINES, line_width=1.5)
+    stage.add(curved_surface(deformed), scalars="millimetre", cmap=SEQUENTIAL, clim=limits)
+    stage.add(sharp_edges(deformed), color=_LINES, line_width=1.5)
+    (image,) = cropped([stage.picture(FROM_UPSTREAM)])
+    figure = new_figure(1.15 + WIDTH * image.shape[0] / image.shape[1])
+    axes = figure.subplots()
+    _show(axes, image, f"{result.title}: deformed and at rest\nLargest displacement "
+          f"{millimetre.max():.1f} mm, to scale")  # fmt: skip
+    bar = _color_bar(figure, axes, limits, SEQUENTIAL, location="bottom", shrink=0.6, aspect=40)
+    bar.set_label("Displacement from C0 to C1 [mm]")
+    return figure
+
+
+@styled
 def draw_stress(folder: RunFolder, result: Result) -> Figure:
     """Von Mises stress on both faces of the deformed blade."""
     rigid = solid_of(read_fields(folder.static_fields))

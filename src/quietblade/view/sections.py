@@ -115,7 +115,7 @@ def draw_convergence(result: Result) -> Figure:
     verdict = "converged" if result.static.converged else "NOT converged"
     left.set(
         xlabel="Pass of the coupling [–]",
-        ylabel=r"relative to $\|u\|$ [–]",
+        ylabel=r"Relative to $\|u\|$ [–]",
         title=f"Coupling by {result.static.coupling_method}, {verdict}",
     )
     right.plot(passes, 1e3 * history.tip_displacement[:, 1], "o-", color=BLUE, markersize=3.5)
