@@ -212,7 +212,26 @@ def test_check_as_json(capsys: pytest.CaptureFixture[str]) -> None:
     assert data["valid"]
     assert data["case"]["blade"]["span"] == 1.0
     assert data["derived"]["kr"] == pytest.approx([0.3351, 0.7372], abs=1e-4)
-    assert data["notices"] == []
+    forecast = data["forecast"]
+    assert forecast["unknowns_step_2"] == pytest.approx(54_692, rel=forecast["size_uncertainty"])
+    assert forecast["total_time_s"] == pytest.approx(sum(forecast["time_s"].values()))
+    doubts = [a for a in data["assumptions"] if not a["holds"]]
+    # of the paper's blade: stall, cavitation and strip theory at its tip
+    assert len(data["notices"]) == len(doubts) == 3
+    assert all(notice["remedy"] for notice in data["notices"])
+
+
+def test_check_predicts_size_cost_and_assumptions(capsys: pytest.CaptureFixture[str]) -> None:
+    execute(["new", "mine", "--preset", "twisted"])
+    capsys.readouterr()
+    assert execute(["check", "mine.toml"]) == ExitCode.DONE
+    seen = capsys.readouterr()
+    for fragment in (
+        "in step 1", "in step 2", "GB, within a factor", "modes C1", "tip speed", "Mach",
+        "times the rotation rate", "stall near", "cavitation number", "mm at rest", "DOUBTFUL",
+    ):  # fmt: skip
+        assert fragment in seen.out
+    assert "strip theory" in seen.err
 
 
 def test_check_of_a_wrong_case_as_json(capsys: pytest.CaptureFixture[str]) -> None:

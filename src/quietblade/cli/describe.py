@@ -23,14 +23,16 @@ from quietblade.case.materials import (
 )
 from quietblade.case.spans import ConstantSpan, FormulaSpan, SpanValue
 from quietblade.case.units import in_unit
+from quietblade.cli.describe_outlook import outlook_data, outlook_tables
 from quietblade.study.losses import Modulus
+from quietblade.study.outlook import Outlook
 from quietblade.study.preflight import Preflight
 from quietblade.study.spectra import names
 
 Rows = list[tuple[str, str]]
 
 
-def case_tables(case: Case, known: Preflight) -> list[tuple[str, Rows]]:
+def case_tables(case: Case, known: Preflight, ahead: Outlook) -> list[tuple[str, Rows]]:
     """Say in words and convenient units what a case says and what follows from it."""
     return [
         ("Blade", _blade_rows(case, known)),
@@ -39,6 +41,7 @@ def case_tables(case: Case, known: Preflight) -> list[tuple[str, Rows]]:
         ("Sound far away", _far_rows(case)),
         *([("Complex moduli", _modulus_rows(case, known))] if known.moduli else []),
         ("Numbers", _number_rows(case, known)),
+        *outlook_tables(ahead),
     ]
 
 
@@ -196,7 +199,7 @@ def _number_rows(case: Case, known: Preflight) -> Rows:
     ]
 
 
-def case_data(case: Case, known: Preflight) -> dict[str, Any]:
+def case_data(case: Case, known: Preflight, ahead: Outlook) -> dict[str, Any]:
     """Return the same as plain data in SI units, angles in rad."""
     return {
         "valid": True,
@@ -219,7 +222,8 @@ def case_data(case: Case, known: Preflight) -> dict[str, Any]:
             "surface_elements": known.surface_elements,
             "moduli": [_modulus_data(case, modulus) for modulus in known.moduli],
         },
-        "notices": [asdict(notice) for notice in known.notices],
+        **outlook_data(ahead),
+        "notices": [asdict(notice) for notice in (*known.notices, *ahead.notices)],
     }
 
 
