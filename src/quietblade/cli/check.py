@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from quietblade.cli.common import ExitCode, console, show_json, show_notices, show_table
+from quietblade.cli.common import ExitCode, console, failure, show_json, show_notices, show_table
 from quietblade.cli.files import write_file
 
 
@@ -38,7 +38,7 @@ def check(
     except InvalidCaseError as error:
         if not as_json:
             raise
-        show_json({"valid": False, "problems": [problem.as_dict() for problem in error.problems]})
+        show_json({"valid": False, **failure(error, ExitCode.CASE_WRONG)})
         return ExitCode.CASE_WRONG
     if as_json:
         show_json(case_data(words, known, ahead))
