@@ -47,11 +47,25 @@ def case_text() -> str:
     return text
 
 
+PROGRAM = """
+import sys
+from pathlib import Path
+from quietblade.case import Case
+from quietblade.results.store import RunFolder
+from quietblade.study.run import run_case
+
+def say(stage, fraction, message):
+    print(stage, message, flush=True)
+
+run_case(Case.load(sys.argv[1]), RunFolder(Path(sys.argv[2])), say)
+"""
+"""What `quietblade run` computes, without the pictures that it draws afterwards."""
+
+
 def start(case: Path, folder: Path) -> subprocess.Popen[str]:
-    """Start the command, with its progress on a pipe."""
-    command = (sys.executable, "-m", "quietblade.cli.main", "run", str(case), "--out", str(folder))
+    """Start a run, with its progress on a pipe."""
     return subprocess.Popen(
-        (*command, "--verbose", "--brief"),
+        (sys.executable, "-c", PROGRAM, str(case), str(folder)),
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         text=True,
