@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 from collections.abc import Iterator
+from functools import cache
 from itertools import count
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -118,11 +119,19 @@ def difference(one: Result, other: Result) -> float:
     return worst
 
 
-def alone(place: Path) -> tuple[Path, Result]:
-    """Write the case, and let its run alone."""
+@cache
+def alone() -> tuple[Result, int]:
+    """Return the result of the run left alone, and the size of its file [B]."""
+    with TemporaryDirectory() as place:
+        result = run(written(Path(place)), Path(place) / "run")
+        return result, RunFolder(Path(place) / "run").result.stat().st_size
+
+
+def written(place: Path) -> Path:
+    """Write the case into a folder."""
     case = place / "case.toml"
     case.write_text(case_text(), encoding="utf-8")
-    return case, run(case, place / "alone")
+    return case
 
 
 @check(
@@ -136,8 +145,9 @@ def alone(place: Path) -> tuple[Path, Result]:
 def resumed() -> float:
     """Kill a run at random moments, each time going on from the one before."""
     random = np.random.default_rng(2026)
+    wanted, _ = alone()
     with TemporaryDirectory() as place:
-        case, wanted = alone(Path(place))
+        case = written(Path(place))
         worst, kills, folders = 0.0, 0, count()
         folder = Path(place) / f"resumed{next(folders)}"
         while kills < KILLS:
@@ -168,10 +178,9 @@ sys.exit(execute(sys.argv[2:]))
 )
 def full_disk() -> float:
     """Let a run find no room for some of its stages, then for none but its result."""
+    wanted, needed = alone()
     with TemporaryDirectory() as place:
-        case, wanted = alone(Path(place))
-        folder = Path(place) / "cramped"
-        needed = RunFolder(Path(place) / "alone").result.stat().st_size
+        case, folder = written(Path(place)), Path(place) / "cramped"
         for room in (needed // 8, needed - 1):  # bytes that a file may have
             command = (sys.executable, "-c", FULL, str(room), "run", str(case))
             done = subprocess.run(
