@@ -10,7 +10,7 @@ from types import MappingProxyType
 
 from quietblade.results.files import ResultError
 
-_LETTERS = {r"{\"o}": "ö", r"{\"u}": "ü", r"{\"a}": "ä", r"\&": "&", "--": "-"}
+_LETTERS = {r"{\"o}": "ö", r"{\"u}": "ü", r"{\"a}": "ä", r"\&": "&", r"\_": "_", "--": "-"}
 _WHERE = ("journal", "booktitle", "institution", "publisher", "school")
 
 
