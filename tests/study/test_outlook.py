@@ -29,6 +29,8 @@ def case_of(preset: str = "paper-aluminium", **changes: Any) -> Case:
             for name, value in plain["materials"].items()
             if name == plain["blade"]["material"]
         }
+    elif preset.startswith("paper"):  # the film of the meshes that are held against
+        plain["film"] |= {"span": [0.05, 0.95], "chord": [0.15, 0.8], "thickness": 1.5e-3}
     return Case.from_plain(plain).varied(changes)
 
 
