@@ -13,7 +13,7 @@ myst_enable_extensions = ["amsmath", "attrs_block", "colon_fence", "deflist", "d
 myst_heading_anchors = 3
 exclude_patterns = ["_generated"]
 
-bibtex_bibfiles = ["references.bib"]
+bibtex_bibfiles = ["../src/quietblade/references.bib"]  # one copy: of the package
 bibtex_default_style = "unsrt"
 bibtex_reference_style = "author_year"
 

@@ -15,6 +15,7 @@ from quietblade.results.comparison import compare_summaries, comparison_table
 from quietblade.results.documentation import json_schema, schema_page
 from quietblade.results.headline import summarise
 from quietblade.results.model import state, without_state
+from quietblade.results.study_figures import headline_figures
 from quietblade.results.summary import Summary
 from quietblade.results.tables import as_text, summary_tables
 from tests.results.synthetic import make_result, with_static
@@ -220,3 +221,18 @@ def test_without_models_there_is_no_table_of_moduli() -> None:
     }
     bare = replace(result, moduli=replace(table, **empty))
     assert "Complex moduli" not in as_text("run", summary_tables(summarise(bare)))
+
+
+def test_levels_of_random_loads_are_densities_everywhere() -> None:
+    result = make_result()
+    random = {
+        name: replace(c, excitations=replace(c.excitations, signal="random"))
+        for name, c in result.configurations.items()
+    }
+    result = replace(result, configurations=random)
+    summary = summarise(result)
+    assert summary.sound_power.level_reference == "1 pW/Hz"
+    assert summary.far_field.source_level_reference == "1 uPa m/sqrt(Hz)"
+    levels = [f.unit for f in headline_figures(result) if f.unit.startswith("dB re")]
+    assert set(levels) == {"dB re 1 pW/Hz"}
+    assert "1 pW/Hz if random" in str(type(summary.sound_power).model_fields["C0_db"].description)

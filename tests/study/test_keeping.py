@@ -134,6 +134,26 @@ def test_a_shelved_result_is_let_go_of_and_read_when_it_is_asked_for(tmp_path: P
     assert take() is made()
 
 
+def test_the_account_says_what_was_kept_and_why_the_rest_was_not(tmp_path: Path) -> None:
+    def account(**inputs: float) -> str:
+        mesh, flow = Origin({"mesh.size": 0.1}, {}, {}), Origin(inputs, {}, {})
+        after = Origin({}, {"flow": flow.key}, {})
+        stages = Stages(
+            lambda *_: None, {"mesh": mesh, "flow": flow, "sweep": after}, StageStore(tmp_path)
+        )
+        for name in ("mesh", "flow", "sweep"):
+            stages.make(name, lambda _: 1)
+        return stages.account()
+
+    assert account(speed=5.0) == ""
+    assert account(speed=5.0) == "kept: mesh, flow, sweep"
+    assert account(speed=6.0) == (
+        "kept: mesh; computed again: flow (speed changed), sweep (follows from flow)"
+    )
+    (tmp_path / "sweep.json").unlink()
+    assert account(speed=6.0) == "kept: mesh, flow; computed: sweep"
+
+
 def test_full_disk_ends_no_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def full(*_: object) -> None:
         raise OSError(28, "No space left on device")

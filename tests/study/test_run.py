@@ -18,7 +18,7 @@ from quietblade.results.vtk import field_labels, read_fields
 from quietblade.study.gather import paper_blade
 from quietblade.study.run import finished, run_case
 from quietblade.study.stages import Stage, stages
-from verification.acoustics_resumed import difference
+from verification.runs import difference
 
 COARSE = {
     "film.span": [0.1, 0.9],

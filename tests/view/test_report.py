@@ -5,7 +5,6 @@ import re
 import shutil
 import sys
 from base64 import b64decode
-from collections.abc import Iterator
 from dataclasses import replace
 from html.parser import HTMLParser
 from io import BytesIO
@@ -15,16 +14,17 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from quietblade.case import Case
+from quietblade.case.presets import preset_text
 from quietblade.cli.main import execute
 from quietblade.cli.report import case_words
 from quietblade.results.answers import QUESTIONS, answers
-from quietblade.results.citations import SOURCES, citation_table
 from quietblade.results.evidence import evidence_tables
 from quietblade.results.headline import summarise
-from quietblade.results.model import Result
 from quietblade.results.store import RunFolder
 from quietblade.results.table import Table
 from quietblade.results.tables import summary_tables
+from quietblade.study.citations import citation_table
 from quietblade.view.report import render_report
 from quietblade.view.report_order import SECTIONS, VIEW
 from quietblade.view.report_pdf import PdfError, require_pdf
@@ -32,6 +32,7 @@ from tests.results.synthetic import make_result, with_static
 from tests.view.test_figures import NAMES
 
 ROOT = Path(__file__).resolve().parents[2]
+CITED = citation_table(Case.parse(preset_text("paper-composite")), "1.2.3")
 WEBP = "data:image/webp;base64,"
 
 
@@ -52,7 +53,9 @@ def run(runs: tuple[RunFolder, ...], tmp_path_factory: pytest.TempPathFactory) -
 def plain(run: RunFolder) -> str:
     """The report without scripts."""
     words = [Table("Blade", (), (("span", "1000 mm <b>"),))]
-    return render_report(run, make_result("composite"), words=words, interactive=False)
+    return render_report(
+        run, make_result("composite"), words=words, others=[CITED], interactive=False
+    )
 
 
 class _Page(HTMLParser):
@@ -111,7 +114,7 @@ def test_sections_stand_in_the_order_in_which_people_ask(plain: str) -> None:
 
 def test_everything_has_one_place() -> None:
     result = make_result("composite")
-    tables = [*summary_tables(summarise(result)), *evidence_tables(result), citation_table(result)]
+    tables = [*summary_tables(summarise(result)), *evidence_tables(result), CITED]
     placed = [title for section in SECTIONS for title in section.tables]
     assert len(placed) == len(set(placed))
     assert {table.title for table in tables} <= set(placed)
@@ -182,29 +185,6 @@ def test_evidence_shows_each_pass() -> None:
     assert unknowns.rows[-1] == ("all", str(result.mesh.unknowns.count.sum()))
 
 
-def _bibliography() -> Iterator[tuple[str, str]]:
-    text = (ROOT / "docs/references.bib").read_text(encoding="utf-8")
-    for entry in re.finditer(r"@\w+\{(\w+),(.*?)\n\}", text, re.DOTALL):
-        yield entry[1], entry[2]
-
-
-def test_citations_are_in_the_bibliography_and_follow_the_methods() -> None:
-    known = dict(_bibliography())
-    for source in SOURCES:
-        year = re.search(r"year\s*=\s*\{(\d+)\}", known[source.key])
-        assert year is None or year[1] in source.text, source.key
-    result = make_result("composite")
-    cited = {row[1] for row in citation_table(result).rows}
-
-    def text(key: str) -> str:
-        return next(source.text for source in SOURCES if source.key == key)
-
-    assert text("Bayliss1982") in cited  # the made-up run has BGT-1
-    assert text("Keller1989") not in cited
-    still: Result = replace(result, configurations={})
-    assert text("Everstine1981") not in {row[1] for row in citation_table(still).rows}
-
-
 def test_the_command_says_where_and_how_large(
     run: RunFolder, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -223,9 +203,12 @@ def test_the_case_is_told_in_words_as_it_was_run(tmp_path: Path) -> None:
     (tmp_path / "case.toml").write_text(case.text, encoding="utf-8")
     run = make_result("composite", case_text=case.text).run
     its = replace(run, content_key=run_key(case, run.code_version))
-    told = {row for table in case_words(tmp_path / "case.toml", its) for row in table.rows}
+    words, (cited,) = case_words(tmp_path / "case.toml", its)
+    told = {row for table in words for row in table.rows}
+    assert cited == citation_table(case, run.code_version)
     assert any("17 mm on the blade" in value for _, value in told)
-    (other,) = case_words(tmp_path / "case.toml", run)  # another key
+    (other,), cited_of_other = case_words(tmp_path / "case.toml", run)  # another key
+    assert cited_of_other == ()
     assert "not the case of this result" in other.rows[0][1]
 
 

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""``quietblade check``: say how a case file is understood, before anything runs."""
+"""``quietblade check``: how a case file is understood and what a run of it will be like."""
 
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from quietblade.cli.common import ExitCode, console, show_json, show_notices, show_table
+from quietblade.cli.common import ExitCode, console, failure, show_json, show_notices, show_table
 from quietblade.cli.files import write_file
 
 
@@ -18,7 +18,10 @@ def check(
     ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Write JSON instead of tables.")] = False,
 ) -> int:
-    """Say how a case file is understood; nothing is computed."""
+    """Say how a case file is understood, what a run will cost, and what the method assumes.
+
+    Nothing heavy is computed. The exit code is 0 unless the case is wrong: warnings do not count.
+    """
     # imported here, so that help does not wait for the words, nor a wrong case for the geometry
     from quietblade.case import Case, InvalidCaseError  # noqa: PLC0415
 
@@ -27,21 +30,24 @@ def check(
             _migrate(case)
         words = Case.load(case)
         from quietblade.cli.describe import case_data, case_tables  # noqa: PLC0415
+        from quietblade.cli.describe_outlook import outlook_tables  # noqa: PLC0415
+        from quietblade.study.outlook import look_ahead  # noqa: PLC0415
         from quietblade.study.preflight import preflight  # noqa: PLC0415
 
         known = preflight(words)
+        ahead = look_ahead(words, known)
     except InvalidCaseError as error:
         if not as_json:
             raise
-        show_json({"valid": False, "problems": [problem.as_dict() for problem in error.problems]})
+        show_json({"valid": False, **failure(error, ExitCode.CASE_WRONG)})
         return ExitCode.CASE_WRONG
     if as_json:
-        show_json(case_data(words, known))
+        show_json(case_data(words, known, ahead))
         return ExitCode.DONE
     console.print(f"{case}: {words.title or 'a case'}", markup=False, style="bold")
-    for title, rows in case_tables(words, known):
+    for title, rows in (*case_tables(words, known), *outlook_tables(ahead)):
         show_table(title, rows)
-    show_notices(known.notices)
+    show_notices((*known.notices, *ahead.notices))
     return ExitCode.DONE
 
 

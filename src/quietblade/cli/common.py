@@ -4,6 +4,7 @@
 import json
 import sys
 from enum import IntEnum
+from math import isfinite
 from typing import Any
 
 from rich.console import Console
@@ -23,7 +24,7 @@ error_console = Console(stderr=True, highlight=False)
 
 
 class ExitCode(IntEnum):
-    """How a command ended."""
+    """How a command ended; the page "On the command line" has the same table."""
 
     DONE = 0
     CASE_WRONG = 1
@@ -31,20 +32,73 @@ class ExitCode(IntEnum):
     FAILED = 3
     STOPPED = 130
 
+    @property
+    def meaning(self) -> str:
+        """What it says, in words."""
+        return _MEANING[self]
 
-def show_error(error: QuietbladeError) -> ExitCode:
+
+_MEANING = {
+    ExitCode.DONE: "done",
+    ExitCode.CASE_WRONG: "wrong case or command",
+    ExitCode.NOT_CONVERGED: "not converged but kept",
+    ExitCode.FAILED: "failed",
+    ExitCode.STOPPED: "stopped by Ctrl-C",
+}
+
+EXIT_CODES = f"Exit codes: {', '.join(f'{code} {code.meaning}' for code in ExitCode)}."
+"""All of them in one line, for the help."""
+
+
+class StoppedError(QuietbladeError):
+    """The user has stopped a command; the text says what becomes of what was finished."""
+
+
+def show_error(error: Exception, *, as_json: bool = False) -> ExitCode:
     """Show an error and return the exit code that belongs to it.
 
     A `CaseError` (and a wrong command line) is 1, every other failure 3. A command that kept an
     unconverged result ends itself with `ExitCode.NOT_CONVERGED`.
+
+    Parameters
+    ----------
+    error : Exception
+    as_json : bool
+        Write it to standard output as JSON too.
     """
-    wrong = isinstance(error, CaseError)
-    lines = str(error).splitlines() or [type(error).__name__]
+    code = ExitCode.CASE_WRONG if isinstance(error, CaseError) else ExitCode.FAILED
+    _show_lines(str(error).splitlines() or [type(error).__name__])
+    if as_json:
+        show_json(failure(error, code))
+    return code
+
+
+def show_stop(said: str, *, as_json: bool) -> ExitCode:
+    """Say that a command was stopped."""
+    error_console.print(said, markup=False, soft_wrap=True)
+    if as_json:
+        show_json(failure(StoppedError(said), ExitCode.STOPPED))
+    return ExitCode.STOPPED
+
+
+def _show_lines(lines: list[str]) -> None:
+    """Write what is wrong to standard error."""
     if len(lines) > 1:
         error_console.print(Text(f"{len(lines)} problems", style="bold red"))
     for line in lines:
         error_console.print(_error_line(line), soft_wrap=True)
-    return ExitCode.CASE_WRONG if wrong else ExitCode.FAILED
+
+
+def failure(error: Exception, code: ExitCode) -> dict[str, Any]:
+    """Return what ``--json`` writes when a command fails: the exit code, and the problems."""
+    lines = str(error).splitlines() or [type(error).__name__]
+    # of an `InvalidCaseError`, whose module is too heavy to be imported for it
+    problems = getattr(error, "problems", None)
+    if problems is None:
+        found = [{"message": line} for line in lines]
+    else:
+        found = [problem.as_dict() for problem in problems]
+    return {"exit_code": int(code), "problems": found}
 
 
 def _error_line(line: str) -> Text:
@@ -70,5 +124,16 @@ def show_table(title: str, rows: list[tuple[str, str]]) -> None:
 
 
 def show_json(data: Any) -> None:
-    """Write JSON to standard output and nothing else."""
-    sys.stdout.write(json.dumps(data, indent=2, ensure_ascii=False, allow_nan=False) + "\n")
+    """Write JSON to standard output and nothing else; what is not finite is null."""
+    sys.stdout.write(json.dumps(_plain(data), indent=2, ensure_ascii=False, allow_nan=False) + "\n")
+
+
+def _plain(data: Any) -> Any:
+    """JSON has no NaN."""
+    if isinstance(data, dict):
+        return {key: _plain(value) for key, value in data.items()}
+    if isinstance(data, list | tuple):
+        return [_plain(value) for value in data]
+    if isinstance(data, float) and not isfinite(data):
+        return None
+    return data

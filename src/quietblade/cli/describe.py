@@ -23,7 +23,9 @@ from quietblade.case.materials import (
 )
 from quietblade.case.spans import ConstantSpan, FormulaSpan, SpanValue
 from quietblade.case.units import in_unit
+from quietblade.cli.describe_outlook import outlook_data
 from quietblade.study.losses import Modulus
+from quietblade.study.outlook import Outlook
 from quietblade.study.preflight import Preflight
 from quietblade.study.spectra import names
 
@@ -196,7 +198,7 @@ def _number_rows(case: Case, known: Preflight) -> Rows:
     ]
 
 
-def case_data(case: Case, known: Preflight) -> dict[str, Any]:
+def case_data(case: Case, known: Preflight, ahead: Outlook) -> dict[str, Any]:
     """Return the same as plain data in SI units, angles in rad."""
     return {
         "valid": True,
@@ -219,7 +221,8 @@ def case_data(case: Case, known: Preflight) -> dict[str, Any]:
             "surface_elements": known.surface_elements,
             "moduli": [_modulus_data(case, modulus) for modulus in known.moduli],
         },
-        "notices": [asdict(notice) for notice in known.notices],
+        **outlook_data(ahead),
+        "notices": [asdict(notice) for notice in (*known.notices, *ahead.notices)],
     }
 
 

@@ -115,17 +115,13 @@ def _packages() -> Iterator[Check]:
 def _solvers() -> Iterator[Check]:
     """Factor and solve one system, complex symmetric like those of a sweep, by each program."""
     import numpy as np
-    from scipy.sparse import csr_matrix, kron
 
     from quietblade.errors import SolverError
     from quietblade.linalg import make_solver
     from quietblade.linalg.chain import SolverName
+    from quietblade.linalg.trial import trial_system
 
-    second = 2.0 * np.eye(CELLS) - np.eye(CELLS, k=1) - np.eye(CELLS, k=-1)
-    line, one = csr_matrix(second), csr_matrix(np.eye(CELLS))
-    cube = kron(kron(line, one), one) + kron(kron(one, line), one) + kron(kron(one, one), line)
-    system = csr_matrix(cube.astype(complex))
-    system.setdiag(system.diagonal() - 0.05 + 0.01j)
+    system = trial_system(CELLS)
     load = np.ones(CELLS**3)
     names: tuple[SolverName, ...] = ("rslab", "mkl-pardiso", "superlu")
     for name in names:

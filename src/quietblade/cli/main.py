@@ -13,12 +13,20 @@ from typer.core import TyperGroup
 from typer.main import get_command
 
 from quietblade import __version__
-from quietblade.cli.common import ExitCode, error_console, show_error
-from quietblade.errors import QuietbladeError
+from quietblade.cli.common import (
+    EXIT_CODES,
+    ExitCode,
+    StoppedError,
+    failure,
+    show_error,
+    show_json,
+    show_stop,
+)
+from quietblade.errors import CaseError, QuietbladeError
 
 COMMANDS = (
-    "new", "check", "run", "show", "plot", "report", "compare", "study", "section", "export",
-    "materials", "doctor",
+    "new", "check", "run", "show", "plot", "report", "compare", "cite", "study", "section",
+    "export", "materials", "doctor",
 )  # fmt: skip
 """Each is the function of the same name in the module of the same name."""
 
@@ -50,6 +58,7 @@ class CommandGroup(TyperGroup):
 
 app = typer.Typer(
     name="quietblade",
+    epilog=EXIT_CODES,
     cls=CommandGroup,
     add_completion=True,
     pretty_exceptions_enable=False,
@@ -71,30 +80,45 @@ def _quietblade(
         ),
     ] = False,
 ) -> None:
-    """Flexible propeller blades in water: deformation, wet modes and radiated sound.
-
-    Exit codes: 0 done, 1 wrong case or command, 2 not converged but kept, 3 failed, 130 stopped.
-    """
+    """Flexible propeller blades in water: deformation, wet modes and radiated sound."""
 
 
 def execute(arguments: Sequence[str]) -> int:
-    """Run one command and return its exit code."""
+    """Run one command and return its exit code.
+
+    With ``--json`` standard output is one JSON value, whether the command ends well or not.
+    """
+    as_json = "--json" in arguments
     try:
         ended = get_command(app).main(
             list(arguments) or ["--help"], prog_name="quietblade", standalone_mode=False
         )
-    except QuietbladeError as error:
-        return show_error(error)
-    except OSError as error:  # a full disk, a name that is too long, a file that is locked
-        place = f"{error.filename}: " if error.filename else ""
-        return show_error(QuietbladeError(f"{place}{error.strerror or error}"))
+    except StoppedError as stop:
+        return show_stop(str(stop), as_json=as_json)
+    except (QuietbladeError, OSError, MemoryError) as error:
+        return show_error(_told(error), as_json=as_json)
     except _UsageError as error:
         error.show()
+        if as_json:
+            show_json(failure(CaseError(error.format_message()), ExitCode.CASE_WRONG))
         return ExitCode.CASE_WRONG
     except (typer.Abort, KeyboardInterrupt):
-        error_console.print("stopped")
-        return ExitCode.STOPPED
+        ended = ExitCode.STOPPED
+    if ended == ExitCode.STOPPED:  # typer makes it of Ctrl-C
+        return show_stop("stopped", as_json=as_json)
     return int(ended) if isinstance(ended, int) else ExitCode.DONE
+
+
+def _told(error: Exception) -> QuietbladeError:
+    """Say in one line what the system has refused."""
+    match error:
+        case QuietbladeError():
+            return error
+        case OSError():
+            place = f"{error.filename}: " if error.filename else ""
+            return QuietbladeError(f"{place}{error.strerror or error}")
+    remedy = "use larger cells (mesh.size) or a smaller sphere (acoustics.sphere_radius)"
+    return QuietbladeError(f"not enough memory; {remedy}")
 
 
 def run() -> None:

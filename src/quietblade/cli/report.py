@@ -40,12 +40,14 @@ def report(
     folder = RunFolder(directory)
     file = out or directory / ("report.pdf" if pdf else "report.html")
     result = folder.load()
+    words, cited = case_words(folder.case, result.run)
     with ProgressDisplay(console, quiet=quiet) as progress:
         page = render_report(
             folder,
             result,
             progress,
-            words=case_words(folder.case, result.run),
+            words=words,
+            others=cited,
             interactive=not (plain or pdf),
         )
         if pdf:
@@ -59,11 +61,12 @@ def report(
     return ExitCode.DONE
 
 
-def case_words(file: Path, run: "RunRecord") -> tuple["Table", ...]:
-    """Say the case of a run in words, as ``check`` does, or why that cannot be."""
+def case_words(file: Path, run: "RunRecord") -> "tuple[tuple[Table, ...], tuple[Table, ...]]":
+    """Say a run's case in words, as ``check`` does, or why that cannot be; and what to cite."""
     from quietblade.case import Case, InvalidCaseError  # noqa: PLC0415
     from quietblade.cli.describe import case_tables  # noqa: PLC0415
     from quietblade.results.table import Table  # noqa: PLC0415
+    from quietblade.study.citations import citation_table  # noqa: PLC0415
     from quietblade.study.preflight import preflight  # noqa: PLC0415
     from quietblade.study.run import run_key  # noqa: PLC0415
 
@@ -71,11 +74,12 @@ def case_words(file: Path, run: "RunRecord") -> tuple["Table", ...]:
         case = Case.load(file).varied(_changes(run.case_text))
         if run_key(case, run.code_version) == run.content_key:
             told = case_tables(case, preflight(case))
-            return tuple(Table(title, (), tuple(rows)) for title, rows in told)
+            words = tuple(Table(title, (), tuple(rows)) for title, rows in told)
+            return words, (citation_table(case, run.code_version),)
         why = "it is not the case of this result; the text of the result's own is at the end"
     except InvalidCaseError as error:
         why = str(error)  # for instance, a file beside the case is gone
-    return (Table("In words", (), ((f"{file.name} cannot be told in words", why),)),)
+    return (Table("In words", (), ((f"{file.name} cannot be told in words", why),)),), ()
 
 
 def _changes(text: str) -> dict[str, Any]:

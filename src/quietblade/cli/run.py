@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from quietblade.cli.common import ExitCode, console, error_console
+from quietblade.cli.common import ExitCode, StoppedError, console, error_console, show_json
 from quietblade.cli.progress import ProgressDisplay
 from quietblade.cli.tables import show_tables
 
@@ -34,13 +34,15 @@ def run(
     verbose: Annotated[
         bool, typer.Option("--verbose", "-v", help="Show every step; run.log has them all.")
     ] = False,
+    as_json: Annotated[
+        bool,
+        typer.Option("--json", help="Print what `show --json` prints; progress goes to stderr."),
+    ] = False,
 ) -> ExitCode:
     """Compute a case: deformation, wet modes and radiated sound.
 
     A run that was stopped goes on from the last stage that it had finished, and a case that has
     changed is computed again only from where the change matters.
-
-    Exit codes: 0 done, 1 wrong case or command, 2 not converged but kept, 3 failed, 130 stopped.
     """
     # many small dense systems: threads of the BLAS would only fight with those of the solvers
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
@@ -53,19 +55,21 @@ def run(
 
     words = Case.load(case)
     folder = RunFolder(out or Path("runs") / case.stem)
+    teller = error_console if as_json else console
     if not force and (result := finished(words, folder)) is not None:
         if not quiet:
-            console.print(f"{folder.root} holds the result of this very case; --force computes it")
+            teller.print(f"{folder.root} holds the result of this very case; --force computes it")
     else:
         try:
-            with ProgressDisplay(console, quiet=quiet, verbose=verbose) as progress:
+            with ProgressDisplay(teller, quiet=quiet, verbose=verbose) as progress:
                 result = run_case(words, folder, progress, force=force, keep=keep)
                 draw_figures(folder, progress)
-        except KeyboardInterrupt:
-            kept = "what was finished is kept, and the same command goes on from there"
-            error_console.print(f"stopped; {kept}" if keep else "stopped")
-            return ExitCode.STOPPED
-    if not quiet:
+        except KeyboardInterrupt as stop:
+            kept = "; what was finished is kept, and the same command goes on from there"
+            raise StoppedError(f"stopped{kept if keep else ''}") from stop
+    if as_json:
+        show_json(summarise(result).model_dump(mode="json"))
+    elif not quiet:
         if not brief:
             summary = summarise(result)
             show_tables(summary.title, summary_tables(summary))

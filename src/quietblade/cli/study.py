@@ -3,7 +3,7 @@
 
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -12,6 +12,7 @@ from quietblade.cli.progress import ProgressDisplay
 from quietblade.cli.tables import show_tables
 
 if TYPE_CHECKING:
+    from quietblade.case.study import Study
     from quietblade.results.study_table import StudyTable
 
 
@@ -34,11 +35,14 @@ def study(
         str, typer.Option("--reading", help="Reading of the targets that is fitted.")
     ] = "",
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Show errors only.")] = False,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print runs and figures as JSON; progress on stderr.")
+    ] = False,
 ) -> ExitCode:
     """Compute the variants of some cases, and their tables; what is there is kept.
 
-    A run that fails is reported and does not end the study. Exit codes: 0 all done, 1 wrong file,
-    2 a run did not converge or a search did not settle, 3 a run failed.
+    A run that fails is reported and does not end the study. The exit code is 2 if a run did not
+    converge or a search did not settle, 3 if a run failed.
     """
     # many small dense systems: threads of the BLAS would only fight with those of the solvers
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
@@ -46,33 +50,61 @@ def study(
     if calibrate or sensitivities:
         from quietblade.cli.study_fit import fit  # noqa: PLC0415  # help must stay fast
 
-        return fit(file, folder, reading, search=calibrate, quiet=quiet)
-    return _study(file, folder, only_plan=plan, quiet=quiet)
+        return fit(file, folder, reading, search=calibrate, quiet=quiet, as_json=as_json)
+    return _study(file, folder, only_plan=plan, quiet=quiet, as_json=as_json)
 
 
-def _study(file: Path, folder: Path, *, only_plan: bool, quiet: bool) -> ExitCode:
+def _study(file: Path, folder: Path, *, only_plan: bool, quiet: bool, as_json: bool) -> ExitCode:
     from quietblade.case.study import Study  # noqa: PLC0415
-    from quietblade.study.studies import plan, run_study, study_tables  # noqa: PLC0415
+    from quietblade.study.studies import run_study, study_tables  # noqa: PLC0415
 
     words = Study.load(file)
     if only_plan:
-        for number, run in enumerate(plan(words), start=1):
-            changes = ", ".join(f"{key} = {value}" for key, value in run.changes.items())
-            console.print(f"{number} {run.name}: {changes or 'as it is'}", markup=False)
-        return ExitCode.DONE
+        return _show_plan(words, as_json=as_json)
+    teller = error_console if as_json else console
 
     def announce(number: int, count: int, name: str, what: str) -> None:
         if what.startswith("failed"):
             error_console.print(f"{name}: {what}", style="red", markup=False)
         elif not quiet:
-            console.print(f"{number} of {count}: {name}, {what}", markup=False)
+            teller.print(f"{number} of {count}: {name}, {what}", markup=False)
 
-    with ProgressDisplay(console, quiet=quiet) as progress:
+    with ProgressDisplay(teller, quiet=quiet) as progress:
         made = run_study(words, folder, announce=announce, progress=progress)
-    if not quiet:
+    if as_json:
+        show_json(_rows(made.table))
+    elif not quiet:
         show_tables(words.title or file.stem, study_tables(made.table, made.claims))
         console.print(f"tables: {folder}", markup=False)
     return _ended(made.table)
+
+
+def _show_plan(words: "Study", *, as_json: bool) -> ExitCode:
+    from quietblade.study.studies import plan  # noqa: PLC0415
+
+    runs = plan(words)
+    if as_json:
+        show_json([{"run": run.name, "changes": dict(run.changes)} for run in runs])
+        return ExitCode.DONE
+    for number, run in enumerate(runs, start=1):
+        changes = ", ".join(f"{key} = {value}" for key, value in run.changes.items())
+        line = f"{number} {run.name}: {changes or 'as it is'}"
+        console.print(line, markup=False, soft_wrap=True)  # one run a line, for grep
+    return ExitCode.DONE
+
+
+def _rows(table: "StudyTable") -> list[dict[str, Any]]:
+    return [
+        {
+            "case": row.case,
+            "variant": row.variant,
+            "state": row.state,
+            "message": row.message,
+            "changes": dict(row.changes),
+            "figures": {f.name: f.value for f in row.figures},
+        }
+        for row in table.rows
+    ]
 
 
 def _ended(table: "StudyTable") -> ExitCode:
@@ -88,18 +120,7 @@ def show_study(folder: Path, *, as_json: bool) -> ExitCode:
     from quietblade.study.studies import read_tables  # noqa: PLC0415
 
     if as_json:
-        rows = [
-            {
-                "case": row.case,
-                "variant": row.variant,
-                "state": row.state,
-                "message": row.message,
-                "changes": dict(row.changes),
-                "figures": {f.name: f.value for f in row.figures},
-            }
-            for row in read_study(folder).rows
-        ]
-        show_json(rows)
+        show_json(_rows(read_study(folder)))
     else:
         show_tables(*read_tables(folder))
     return ExitCode.DONE

@@ -3,6 +3,7 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import fields
+from io import BytesIO
 from pathlib import Path
 from typing import Any, TypeVar, get_args, get_origin, get_type_hints
 
@@ -72,7 +73,10 @@ def write(tree: xr.DataTree, path: Path) -> None:
         A variable is not registered.
     """
     check_registered(tree)
-    tree.to_netcdf(path, engine="h5netcdf")
+    content = BytesIO()
+    tree.to_netcdf(content, engine="h5netcdf")
+    # not by HDF5 itself, which ends the process on a full disk
+    path.write_bytes(content.getbuffer())
 
 
 def read(path: Path) -> xr.DataTree:

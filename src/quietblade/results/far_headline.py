@@ -5,6 +5,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from quietblade.results.excitations import of_signal
 from quietblade.results.model import ConfigurationResult, Result, path
 from quietblade.results.peaks import find_peaks
 from quietblade.results.summary import (
@@ -25,6 +26,7 @@ def far_field_summary(result: Result) -> FarFieldSummary:
         origin=first.far_field.origin if first else "",
         band_kind=first.bands.kind if first else "",
         distance_m=first.directivity.distance if first else None,
+        source_level_reference=of_signal("1 uPa m", random=first.random) if first else "",
         C0=_sound(members.get("C0")),
         C1=_sound(members.get("C1")),
     )

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from quietblade.results import dataset
-from quietblade.results.files import ResultError, replacing, write_text
+from quietblade.results.files import ResultError, remove_leftovers, replacing, write_text
 from quietblade.results.headline import summarise
 from quietblade.results.model import Result
 from quietblade.results.tables import as_text, summary_tables
@@ -73,6 +73,11 @@ class RunFolder:
         write_text(self.summary, as_text(summary.title, summary_tables(summary)))
         with replacing(self.result) as temporary:
             dataset.write(dataset.to_tree(result), temporary)
+
+    def tidy(self) -> None:
+        """Remove what killed runs have left half-written; no other run may be at work."""
+        for place in (self.root, self.figures, self.static_fields.parent):
+            remove_leftovers(place)
 
     def load(self) -> Result:
         """Read the result.

@@ -2,11 +2,12 @@
 """The figures of one run that a study tabulates and a calibration fits: one vocabulary."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from quietblade.results.claims import judge_claims
+from quietblade.results.excitations import RANDOM, of_signal
 from quietblade.results.headline import summarise
 from quietblade.results.model import Result
 from quietblade.results.peaks import find_peaks
@@ -26,7 +27,7 @@ class Figure:
     value : float
         NaN if it was not computed.
     unit : str
-        ``"1"`` is a ratio or a count; levels say ``dB re 1 pW``.
+        ``"1"`` is a ratio or a count; levels say ``dB re 1 pW``, of random loads ``1 pW/Hz``.
     meaning : str
         In a few words.
     """
@@ -43,13 +44,15 @@ def headline_figures(result: Result) -> tuple[Figure, ...]:
     Those of modes are named by configuration, mode and what they are: ``C1_T2_peak_level``.
     """
     summary = summarise(result)
-    return (
+    random = summary.sound_power.signal == RANDOM
+    figures = (
         *_static(summary),
         *_modes(summary),
         *_stepped(result),
         *_sound(summary),
         *_cost(summary),
     )
+    return tuple(replace(f, unit=of_signal(f.unit, random=random)) for f in figures)
 
 
 def all_figures(result: Result) -> dict[str, float]:

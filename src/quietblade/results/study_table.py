@@ -229,7 +229,9 @@ def write_study(table: StudyTable, root: Path) -> None:
     """Write ``study.csv`` and, last, ``study.nc`` into a folder."""
     write_text(root / "study.csv", table.to_csv())
     with replacing(root / "study.nc") as temporary:
-        table.to_dataset().to_netcdf(temporary, engine="h5netcdf")
+        content = io.BytesIO()
+        table.to_dataset().to_netcdf(content, engine="h5netcdf")
+        temporary.write_bytes(content.getbuffer())  # see `quietblade.results.dataset.write`
 
 
 def is_study(root: Path) -> bool:

@@ -24,7 +24,11 @@ Vector = tuple[Number, Number, Number]
 def _of(key: str, note: str = "") -> Any:
     """Field that is described by a registered quantity."""
     quantity = QUANTITIES[key]
-    unit = f" [{quantity.label}]" if quantity.label not in {"", "1"} else ""
+    label = quantity.label
+    density = quantity.per_hertz().label.removeprefix("dB re ")
+    if key.startswith("C*/") and not label.endswith(density):
+        label += f", or {density} if random"
+    unit = f" [{label}]" if label not in {"", "1"} else ""
     more = f"; {note}" if note else ""
     return Field(description=f"{quantity.description}{unit}{more}")
 
@@ -121,7 +125,9 @@ class ModeSummary(_Part):
     dry_frequency_hz: Number = _of("C*/dry_modes/frequency", "of the dry mode that belongs to it")
     peak_share: Number = _of("C*/participation/share", "at the mode's own peak")
     peak_frequency_hz: Number = Field(description="frequency of the mode's peak in the power [Hz]")
-    peak_level_db: Number = Field(description="sound power level of that peak [dB re 1 pW]")
+    peak_level_db: Number = Field(
+        description="sound power level of that peak [dB re 1 pW, or 1 pW/Hz]"
+    )
     peak_width_hz: Number = Field(description="half-power width of that peak [Hz]")
 
 
@@ -191,7 +197,7 @@ class PatternSummary(_Part):
 
     mode: str = Field(description="wet mode that makes the peak, or empty")
     frequency_hz: Number = _of("C*/directivity/frequency")
-    level_db: Number = Field(description="sound power level [dB re 1 pW]")
+    level_db: Number = Field(description="sound power level [dB re 1 pW, or 1 pW/Hz if random]")
     source_level_db: Number = _of("C*/directivity/source_level")
     width_hz: Number = _of("C*/peaks/width", "of a peak")
     estimate_db: Number = _of("C*/peaks/estimate", "of a peak")
@@ -229,6 +235,9 @@ class FarFieldSummary(_Part):
     origin: str = _of("C*/far_field/origin")
     band_kind: str = _of("C*/bands/kind")
     distance_m: Number = _of("C*/directivity/distance", "null if infinite")
+    source_level_reference: str = Field(
+        description="reference of the source levels: 1 uPa m, or 1 uPa m/sqrt(Hz) if random"
+    )
     C0: ConfigurationSound
     C1: ConfigurationSound
 

@@ -124,7 +124,7 @@ def write_fields(
         writer.SetFileName(str(temporary))
         writer.SetInputData(grid)
         if not writer.Write():
-            raise ResultError(f"{path}: VTK could not write the file; is the disk full?")
+            raise OSError("VTK could not write the file; the disk may be full")
 
 
 def read_fields(path: Path) -> pv.UnstructuredGrid:

@@ -33,6 +33,10 @@ class Clock:
         self.notices: list[Notice] = []
         self._progress = progress
 
+    def tell(self, said: str) -> None:
+        """Tell the progress callback something about all stages."""
+        self._progress("stages", 1.0, said)
+
     @contextmanager
     def stage(self, name: str, why: str = "") -> Iterator[Progress]:
         """Time what is done inside; yields the progress callback under the stage's name.
@@ -80,6 +84,7 @@ class Stages(Clock):
     ) -> None:
         super().__init__(progress)
         self._origins, self._store, self._force = origins, store, force
+        self._why: dict[str, str] = {}
         if store is not None:
             store.tidy(origins)
 
@@ -115,6 +120,7 @@ class Stages(Clock):
                     said = f"kept ({kept.lap.seconds:.1f} s when it was computed)"
                     self._progress(name, 1.0, said)
                     return result
+        self._why[name] = why
         with self.stage(name, why) as report:
             result = compute(report)
         if store is not None:
@@ -125,6 +131,16 @@ class Stages(Clock):
                 remedy = "Make room on the disk, or run with --no-keep"
                 self.notices.append(Notice(f"stage {name}", fault, remedy=remedy))
         return result
+
+    def account(self) -> str:
+        """Say what was kept and what was computed again, and why; empty for a first run."""
+        kept = [name for name, lap in self.laps.items() if lap.kept]
+        again = [f"{name} ({why})" for name, why in self._why.items() if why]
+        new = [name for name, why in self._why.items() if not why]
+        if not kept and not again:
+            return ""
+        told = (("kept", kept), ("computed again", again), ("computed", new))
+        return "; ".join(f"{what}: {', '.join(names)}" for what, names in told if names)
 
     def shelve(
         self, name: str, compute: Callable[[Progress], Made], makers: Makers = _NOTHING

@@ -3,10 +3,11 @@
 
 import os
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from datetime import datetime
 from pathlib import Path
 from platform import node
+from typing import TextIO
 
 from quietblade import __version__
 from quietblade.typing import Progress
@@ -28,10 +29,11 @@ def logging_to(file: Path, progress: Progress) -> Iterator[Progress]:
     callable
         Progress callback that does both.
     """
-    with file.open("a", encoding="utf-8", buffering=1) as log:  # a killed run keeps its lines
+    with _opened(file) as log:
 
         def write(text: str) -> None:
-            log.write(f"{datetime.now().astimezone().isoformat(timespec='seconds')} {text}\n")
+            with suppress(OSError):  # a full disk ends no run for a line of its log
+                log.write(f"{datetime.now().astimezone().isoformat(timespec='seconds')} {text}\n")
 
         def report(stage: str, fraction: float | None, message: str) -> None:
             share = "" if fraction is None else f" {100.0 * fraction:3.0f} %"
@@ -45,3 +47,13 @@ def logging_to(file: Path, progress: Progress) -> Iterator[Progress]:
             write(f"ended by {type(error).__name__}: {error}")
             raise
         write("done")
+
+
+@contextmanager
+def _opened(file: Path) -> Iterator[TextIO]:
+    log = file.open("a", encoding="utf-8", buffering=1)  # a killed run keeps its lines
+    try:
+        yield log
+    finally:
+        with suppress(OSError):
+            log.close()

@@ -92,6 +92,7 @@ def run_case(
     ngs.SetNumThreads(default_threads())
     facts = preflight(case)
     with locked(folder.root), logging_to(folder.log, progress) as report:
+        folder.tidy()
         store = StageStore(folder.stages) if keep else None
         stages = Stages(report, origins(case), store, force=force)
         result = _run(case, facts, folder, stages)
@@ -137,6 +138,8 @@ def _run(case: Case, facts: Preflight, folder: RunFolder, stages: Stages) -> Res
     if case.campbell is not None:
         solve = partial(solve_campbell, case, case.campbell, blade, mesh)
         diagram, diagram_notices = stages.make("Campbell diagram", solve, parts)
+    if account := stages.account():
+        stages.tell(account)
     with stages.stage("files"):
         write_static_fields(mesh, statics, folder)
         for name, vibration in vibrations.items():

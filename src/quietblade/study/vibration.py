@@ -19,6 +19,7 @@ from quietblade.mesh.motion import MeshMotion
 from quietblade.propulsion.structure import Structure, StructureState
 from quietblade.propulsion.tangent import STIFFNESS, Tangent, compute_tangent
 from quietblade.study import losses, translate
+from quietblade.study.assumptions import FAST_SPIN
 from quietblade.study.clock import within
 from quietblade.study.excitations import Excited, excite, needs_root, root_centre
 from quietblade.study.frames import SectionFrames
@@ -43,9 +44,6 @@ static load moves into the band keeps its name."""
 SPACE_TOLERANCE = 1e-6
 """Residual of the solves that make the space of a reduced sweep.  They say where the solutions
 lie, not what they are: these, and the estimate of their error, come from the matrices."""
-
-FAST_SPIN = 0.05
-"""Ratio 2 omega_p / omega_1 beyond which the neglected Coriolis force is noticed."""
 
 
 @dataclass(frozen=True)

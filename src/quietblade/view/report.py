@@ -12,7 +12,6 @@ from string import Template
 from PIL import Image
 
 from quietblade.results.answers import QUESTIONS, answers
-from quietblade.results.citations import citation_table
 from quietblade.results.evidence import evidence_tables
 from quietblade.results.headline import summarise
 from quietblade.results.model import Result
@@ -31,6 +30,7 @@ def render_report(
     progress: Progress = silent,
     *,
     words: Sequence[Table] = (),
+    others: Sequence[Table] = (),
     interactive: bool = True,
 ) -> str:
     """Report of a run as HTML; missing figures are drawn first.
@@ -44,6 +44,8 @@ def render_report(
     progress : callable
     words : sequence of Table
         The case in words.
+    others : sequence of Table
+        What else is told, each in the section that has a place for its title.
     interactive : bool
         Whether the page carries the view of the moving blade, about 3 MB; without it the page has
         no script at all.
@@ -59,8 +61,7 @@ def render_report(
     page = Template(files("quietblade.view").joinpath("report.html").read_text(encoding="utf-8"))
     given = {table.title: table for table in summary_tables(summary)}
     given |= {table.title: table for table in evidence_tables(result)}
-    cited = citation_table(result)
-    given[cited.title] = cited
+    given |= {table.title: table for table in others}
     parts = []
     for section in (*SECTIONS, _rest(given, figures)):
         own = words if section.title == CASE else ()
