@@ -4,7 +4,7 @@
 One layer of hexahedra in the film, pyramids on its faces, tetrahedra elsewhere.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 
@@ -14,6 +14,7 @@ import numpy as np
 from quietblade.errors import MeshError
 from quietblade.geometry import Blade
 from quietblade.mesh.cad import Patch, Solids, build_solids
+from quietblade.mesh.cover import clear_size
 from quietblade.mesh.model import CellBlock, Mesh, patch_name
 from quietblade.mesh.quality import poor_cell_notices, region_quality
 from quietblade.typing import FloatArray, IntArray
@@ -78,7 +79,7 @@ def build_mesh(blade: Blade, spec: MeshSpec) -> Mesh:
         try:
             solids = build_solids(blade, centre, spec.radius, spec.patches)
             _set_film_layer(blade, solids, spec.size)
-            _set_sizes(solids, spec)
+            _set_sizes(blade, solids, spec)
             gmsh.model.mesh.generate(3)
             gmsh.model.mesh.setOrder(2)
         except MeshError:
@@ -149,15 +150,35 @@ def _wetted_faces(solids: Solids) -> list[int]:
     return [face for face in _faces_of(solids.blade) if face in water]
 
 
-def _set_sizes(solids: Solids, spec: MeshSpec) -> None:
-    """Cells of one size on the blade, growing linearly towards the sphere."""
+def _set_sizes(blade: Blade, solids: Solids, spec: MeshSpec) -> None:
+    """Cells of one size on the blade, growing linearly towards the sphere.
+
+    They are smaller where faces with longer edges would cut into the film.
+    """
     wetted = _wetted_faces(solids)
     set_growth(wetted, spec.size, spec.water_size or 0.25 * spec.radius)
+    clear = clear_size(blade)
+    if min(clear(s) for s in np.linspace(0.0, 1.0, 101)) < spec.size:
+        _keep_clear(blade, wetted, clear)
     for outline in solids.outlines:
         side_faces = [f for f in wetted if _carries(f, outline)]
         if len(side_faces) != 1:
             raise MeshError("the excited patch does not lie on one face of the blade")
         gmsh.model.mesh.embed(1, outline, 2, side_faces[0])
+
+
+def _keep_clear(blade: Blade, faces: list[int], clear: Callable[[float], float]) -> None:
+    """Have cells on faces, and on their edges, no larger than a size by the span fraction."""
+    edges = {tag for _, tag in gmsh.model.getBoundary([(2, f) for f in faces], combined=False,
+                                                      oriented=False)}  # fmt: skip
+    bounded = {1: edges, 2: set(faces)}
+
+    def size(dim: int, tag: int, x: float, y: float, z: float, size: float) -> float:
+        if tag not in bounded.get(dim, ()):
+            return size
+        return min(size, clear(float((z - blade.hub_radius) / blade.span)))
+
+    gmsh.model.mesh.setSizeCallback(size)
 
 
 def set_growth(surfaces: list[int], size: float, largest: float) -> None:
