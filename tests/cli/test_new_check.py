@@ -197,7 +197,8 @@ def test_brackets_in_a_message_are_shown(capsys: pytest.CaptureFixture[str]) -> 
 
 
 def test_film_that_does_not_fit(capsys: pytest.CaptureFixture[str]) -> None:
-    text = preset_text("paper-aluminium").replace('"1.9 mm"', '"3 mm"')
+    text = re.sub('^thickness = ".* mm"', 'thickness = "3 mm"', preset_text("paper-aluminium"),
+                  flags=re.MULTILINE)  # fmt: skip
     Path("mine.toml").write_text(text, encoding="utf-8")
     assert execute(["check", "mine.toml"]) == ExitCode.CASE_WRONG
     shown = capsys.readouterr().err

@@ -82,7 +82,7 @@ def test_blade_without_film_meshes() -> None:
 
 def test_cells_too_coarse_for_the_curved_blade_are_refused_with_the_place() -> None:
     with pytest.raises(MeshError, match=r"inverted at x = .* m, y = .* m, z = .* m"):
-        build_mesh(make_twisted_blade(), MeshSpec(0.05, (0.0, 0.0, 0.7), 1.3, (PATCH,), 0.6))
+        build_mesh(make_twisted_blade(), MeshSpec(0.1, (0.0, 0.0, 0.7), 1.3, (PATCH,), 0.6))
 
 
 def test_film_that_pierces_the_blade_is_refused() -> None:

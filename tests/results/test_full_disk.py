@@ -47,7 +47,8 @@ cells = {"blade": [CellBlock("tetra10", np.arange(20000).reshape(-1, 10))]}
 refused("fields", lambda: write_fields(root / "fields" / "a.vtu", points, cells))
 picture = Figure()
 picture.subplots().imshow(np.random.default_rng(1).random((300, 300)))
-refused("figures", lambda: _save(root / "figures", {"a": lambda: picture}, lambda *_: None))
+drawn = {"a": lambda: picture}
+refused("figures", lambda: _save(root / "figures", drawn, lambda *_: None, ("png",)))
 refused("report", lambda: write_text(root / "report" / "report.html", "x" * 2 * room))
 stages = Stages(lambda *_: None, {"mesh": Origin({}, {}, {})}, StageStore(root / "stages"))
 stages.make("mesh", lambda _: np.zeros(room))
