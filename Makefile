@@ -13,7 +13,7 @@ LOCK   := requirements-dev.lock
 
 help:
 	@echo "make demo     the paper's two blades, from case file to sound power"
-	@echo "make paper    the paper's study claim by claim, at its size (resumable; an hour or more)"
+	@echo "make paper    the paper's study claim by claim, at its size (resumable; half an hour)"
 	@echo "make paper-calibration  what the paper leaves open: search and sensitivities (two hours)"
 	@echo "make paper-page  the page of the paper, from the runs of its study"
 	@echo "make test     the tests, on $(JOBS) processes (JOBS=1 for one)"
