@@ -60,6 +60,7 @@ paper-page: $(STAMP)
 	$(BIN)/python -m tools.paper_beyond
 	$(BIN)/quietblade study cases/paper-beyond.toml --out runs/paper/beyond
 	$(BIN)/python -m tools.paper_page
+	$(BIN)/python -m tools.draw_start
 
 # Many small problems: one thread each, so that processes do not fight for the cores.
 test: export OMP_NUM_THREADS = 1

@@ -4,6 +4,7 @@
 The gallery is drawn from stored runs by tools/paper_page.py; run this after it.
 """
 
+import re
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -17,23 +18,30 @@ OUT = DOCS / "_static" / "start.png"
 DPI = 100
 INK, BLUE = "#333333", "#0072b2"
 
-WORDS = """\
-[blade]
-span     = "1 m"
-chord    = { s = [0, 1], values = ["250 mm", "75 mm"] }
-material = "woven-carbon"
+CASE = DOCS.parent / "cases" / "paper-composite.toml"
+SHOWN = {
+    "blade": ("span", "chord", "material"),
+    "film": ("thickness", "material"),
+    "flow": ("speed", "rotation"),
+    "acoustics": ("band",),
+}
+"""Keys of the case that the picture shows, by table."""
 
-[film]
-thickness = "1.5 mm"
-material  = "polymer"
 
-[flow]
-speed    = "5 m/s"
-rotation = "0.58 rad/s"
-
-[acoustics]
-band = ["100 Hz", "220 Hz"]
-"""
+def words() -> str:
+    """Copy some lines of the case file, without their comments."""
+    text, lines = CASE.read_text(encoding="utf-8"), []
+    for table, keys in SHOWN.items():
+        body = text.partition(f"[{table}]")[2].partition("\n[")[0]
+        lines.append(f"[{table}]")
+        for key in keys:
+            found = re.search(rf"^{key} = (.*?)\s*(#.*)?$", body, re.MULTILINE)
+            if found is None:
+                raise SystemExit(f"{CASE.name} has no {table}.{key}")
+            value = found[1].replace(', interpolation = "linear"', "")
+            lines.append(f"{key:9} = {value}")
+        lines.append("")
+    return "\n".join(lines)
 
 
 def picture(name: str) -> AnyArray:
@@ -57,7 +65,7 @@ def main() -> None:
     )
     figure.get_layout_engine().set(w_pad=0.25, h_pad=0.1)
     panel(axes[0], "1", "Say what the blade is")
-    axes[0].text(0.0, 0.97, WORDS, va="top", family="monospace", fontsize=11.5, color=INK)
+    axes[0].text(0.0, 0.97, words(), va="top", family="monospace", fontsize=11.5, color=INK)
     panel(axes[1], "2", "See how it bends under its own lift")
     axes[1].imshow(picture("figure-4"))
     panel(axes[2], "3", "Know how it rings, at rest and under load")
