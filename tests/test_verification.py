@@ -28,7 +28,7 @@ def test_quick_check(check: Check) -> None:
 
 
 def test_ids_name_their_part() -> None:
-    parts = {"structure", "flow", "acoustics", "paper"}
+    parts = {"structure", "flow", "acoustics", "paper", "runs"}
     assert {name.split("/")[0] for name in CHECKS} <= parts
 
 

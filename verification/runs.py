@@ -23,7 +23,7 @@ from verification.registry import check
 
 KILLS = 10
 CHANGES = {
-    'size = "22 mm"': 'size = "60 mm"',
+    'size = "23 mm"': 'size = "60 mm"',
     'band = ["100 Hz", "220 Hz"]': 'band = ["100 Hz", "160 Hz"]',
     'step = "1 Hz"': 'step = "20 Hz"',
     "sections = 101": "sections = 21\nsection_nodes = 81",

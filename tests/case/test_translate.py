@@ -23,7 +23,7 @@ def test_blade_and_film() -> None:
     assert blade.chord(s) == pytest.approx([0.25, 0.1625, 0.075])
     assert blade.radius(s) == pytest.approx([0.2, 0.7, 1.2])
     assert blade.film is not None
-    assert blade.film.thickness == 1.5e-3
+    assert blade.film.thickness == pytest.approx(1.55e-3)
 
 
 def test_twisted_blade() -> None:

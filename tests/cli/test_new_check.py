@@ -178,7 +178,7 @@ def test_new_in_a_place_that_cannot_be_written(capsys: pytest.CaptureFixture[str
 
 def test_check_lists_all_problems(capsys: pytest.CaptureFixture[str]) -> None:
     text = preset_text("paper-aluminium")
-    text = text.replace('span = "1 m"', "span = 1").replace('"22 mm"', '"22 kg"')
+    text = text.replace('span = "1 m"', "span = 1").replace('"23 mm"', '"23 kg"')
     Path("mine.toml").write_text(text, encoding="utf-8")
     assert execute(["check", "mine.toml"]) == ExitCode.CASE_WRONG
     seen = capsys.readouterr()
@@ -187,7 +187,7 @@ def test_check_lists_all_problems(capsys: pytest.CaptureFixture[str]) -> None:
     assert rows[0] == "2 problems"
     line = 1 + text.splitlines().index("span = 1")
     assert rows[1].startswith(f"error mine.toml:{line}: blade.span = 1: a bare number where")
-    assert 'mesh.size = "22 kg"' in rows[2]
+    assert 'mesh.size = "23 kg"' in rows[2]
 
 
 def test_brackets_in_a_message_are_shown(capsys: pytest.CaptureFixture[str]) -> None:

@@ -53,7 +53,7 @@ def test_kept_result_that_did_not_converge_has_its_own_exit_code(
 def test_wrong_case_ends_before_anything_is_made(
     case: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    text = case.read_text(encoding="utf-8").replace('size = "22 mm"', 'size = "-22 mm"')
+    text = case.read_text(encoding="utf-8").replace('size = "23 mm"', 'size = "-23 mm"')
     case.write_text(text, encoding="utf-8")
     assert execute(["run", str(case), "--out", str(tmp_path / "run")]) == 1
     assert "mesh.size" in capsys.readouterr().err

@@ -210,7 +210,8 @@ def test_entries_of_lists_are_changed_one_by_one() -> None:
     both = changed(case, {"film.span[0]": 0.1, "film.span[1]": 0.8, "film.thickness": "1 mm"})
     assert both.film is not None
     assert both.film.span == (0.1, 0.8)
-    assert case_figures(both)["film_aspect"] == pytest.approx(0.7 / (0.65 * 0.17125))
+    width = both.film.chord[1] - both.film.chord[0]
+    assert case_figures(both)["film_aspect"] == pytest.approx(0.7 / (width * 0.17125))
     with pytest.raises(InvalidCaseError, match="not an entry of a list"):
         changed(case, {"film.thickness[0]": 1.0})
 

@@ -88,6 +88,17 @@ def _machine() -> Iterator[Check]:
     yield Check("disk here", f"{shutil.disk_usage(Path()).free / 1e9:.1f} GB free", "good")
 
 
+def _module(distribution: str) -> str:
+    """Name under which a distribution is imported, as PIL is that of pillow."""
+    from packaging.utils import canonicalize_name
+
+    normal = canonicalize_name(distribution)
+    for module, owners in metadata.packages_distributions().items():
+        if normal in map(canonicalize_name, owners) and not module.startswith("_"):
+            return module
+    return distribution
+
+
 def _packages() -> Iterator[Check]:
     """Check what the installed quietblade says that it needs."""
     from packaging.requirements import Requirement
@@ -99,7 +110,7 @@ def _packages() -> Iterator[Check]:
         try:
             found = metadata.version(name)
             if not optional:
-                import_module(name)
+                import_module(_module(name))
         except metadata.PackageNotFoundError:
             state = "optional" if optional else "bad"
             yield Check(name, "not installed", state, f"pip install '{wanted}'")

@@ -19,7 +19,7 @@ from quietblade.mesh.model import INTERFACE, Mesh
 from quietblade.mesh.quality import POOR_JACOBIAN, tetrahedron_jacobians
 from quietblade.typing import FloatArray
 
-_ATTEMPTS = ((2.5, 4), (3.0, 8), (2.0, 8), (2.5, 16))
+_ATTEMPTS = ((2.5, 4), (3.0, 8), (2.25, 8), (2.1, 16), (2.5, 16))
 """Power of the cell size and number of steps, tried in turn until no cell is poor."""
 
 
