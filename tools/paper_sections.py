@@ -46,7 +46,13 @@ def claims(runs: PaperRuns, _: Path) -> Iterator[str]:
         for blade in BLADES
         if (result := runs.variant(blade, variant)) is not None and result.configurations
     }
-    shown = [v for v in runs.variants() if all((blade, v) in judged for blade in BLADES)]
+    # the other meshes are told by the uncertainty
+    meshes = tuple(v for v in runs.variants() if v.startswith(f"{runs.main}-"))
+    shown = [
+        v
+        for v in runs.variants()
+        if v not in meshes and all((blade, v) in judged for blade in BLADES)
+    ]
     yield _choices(runs, shown)
     for variant in shown:
         every = [c for blade in BLADES for c in judged[blade, variant].values()]
