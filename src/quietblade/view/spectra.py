@@ -30,6 +30,7 @@ from quietblade.view.style import (
 
 _LEVEL = "Sound power level $L_W$ [dB re 1 pW]"
 _SOURCE_LEVEL = "Source level $L_S$ [dB re 1 µPa m]"
+_LONG = 24  # letters of a legend's entry of which four do not fit side by side
 _FREQUENCY = "Frequency [Hz]"
 _WORTH_TELLING = 0.1  # dB of error by the radiation condition
 _TITLES = {"C0": "C0, at rest", "C1": "C1, under load"}
@@ -196,10 +197,12 @@ def _draw_spectra(
         allowed = draw_narrow_limits(axes, limited[0].configurations, limited[1])
     _keep_readable(axes, [*levels, *(curve.tops[1] for curve in curves), allowed])
     tops = _name_peaks(axes, curves)
+    handles, texts = axes.get_legend_handles_labels()
     figure.legend(
-        *axes.get_legend_handles_labels(),
+        handles,
+        texts,
         loc="outside lower center",
-        ncols=4,
+        ncols=4 if max(map(len, texts), default=0) < _LONG else 2,
         title="; ".join(dict.fromkeys(radiation_note(c.configuration) for c in curves))
         + f"\n{_sweep_note([c.configuration for c in curves])}",
         title_fontsize=7.5,
