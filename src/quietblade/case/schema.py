@@ -34,7 +34,7 @@ def case_schema() -> dict[str, Any]:
     what values mean together, only `Case` knows.
     """
     models = [(model, "validation") for model in (Case, *_BY_NAME)]
-    _, schema = models_json_schema(models, schema_generator=_Generator)  # type: ignore[arg-type]
+    _, schema = models_json_schema(models, schema_generator=_Generator)  # type: ignore[arg-type]  # the mode is a literal
     definitions = {name: _as_toml(inner) for name, inner in schema["$defs"].items()}
     for definition in definitions.values():
         del definition["title"]  # the name of a class

@@ -15,7 +15,7 @@ from quietblade.results.store import RunFolder
 from quietblade.typing import AnyArray, FloatArray, Progress, silent
 from quietblade.view.render import FROM_UPSTREAM, Stage, cropped
 from quietblade.view.style import SEQUENTIAL
-from quietblade.view.surfaces import Motion, MovingSurface, mode_surface, steady_surface
+from quietblade.view.surfaces import Motion, MovingSurface, moving_surfaces
 
 _FRAMES, _PERIOD = 16, 1.6  # of one swing; seconds
 _SIZE = (960, 640)  # pixels, before the margins are cut
@@ -45,8 +45,7 @@ def draw_animations(
     ResultError
         A file of fields is missing.
     """
-    surfaces = [steady_surface(folder)]
-    surfaces += [mode_surface(folder, result, name) for name in result.configurations]
+    surfaces = moving_surfaces(folder, result)
     moving = [(surface, motion) for surface in surfaces for motion in surface.motions]
     made = []
     for done, (surface, motion) in enumerate(moving):

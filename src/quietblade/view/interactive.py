@@ -19,7 +19,7 @@ from plotly.offline import get_plotlyjs
 from quietblade.results.model import Result
 from quietblade.results.store import RunFolder
 from quietblade.typing import AnyArray
-from quietblade.view.surfaces import Motion, MovingSurface, mode_surface, steady_surface
+from quietblade.view.surfaces import Motion, MovingSurface, moving_surfaces
 
 _STEPS = 32767
 """Steps of a displacement up to the largest of its motion: two bytes a number."""
@@ -39,9 +39,7 @@ def interactive_view(folder: RunFolder, result: Result) -> str:
     ResultError
         A file of fields is missing.
     """
-    surfaces = [steady_surface(folder)]
-    surfaces += [mode_surface(folder, result, name) for name in result.configurations]
-    scene, numbers = packed(surfaces)
+    scene, numbers = packed(moving_surfaces(folder, result))
     parts = files("quietblade.view")
     # the text of a case may stand in a name; nothing in it may end the element
     told = json.dumps(scene).replace("<", "\\u003c")

@@ -61,6 +61,18 @@ class MovingSurface:
     motions: tuple[Motion, ...]
 
 
+def moving_surfaces(folder: RunFolder, result: Result) -> tuple[MovingSurface, ...]:
+    """Surface of a run with its steady deformation, and one a configuration with its modes.
+
+    Raises
+    ------
+    ResultError
+        A file of fields is missing.
+    """
+    modes = (mode_surface(folder, result, name) for name in result.configurations)
+    return steady_surface(folder), *modes
+
+
 def steady_surface(folder: RunFolder) -> MovingSurface:
     """Surface at rest, with the deformation under the steady load as its only motion."""
     grid = solid_of(read_fields(folder.static_fields))
