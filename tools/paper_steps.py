@@ -11,7 +11,7 @@ from quietblade.results.claims import BLADES
 from quietblade.results.model import ConfigurationResult, Result
 from quietblade.study.decomposition import ALL, BOTH, LOAD, REST, SHAPE, SHARES, STRESS
 from quietblade.study.water_check import ANEW, MOVED
-from quietblade.view.alternatives import draw_costs, draw_shift, modes_with_peak
+from quietblade.view.alternatives import draw_costs, draw_shift, modes_drawn, modes_with_peak
 from quietblade.view.paper import save
 from quietblade.view.spectra import draw_sound_power_of
 from tools.paper_runs import ModeFigures, PaperRuns, modes_in_band
@@ -60,6 +60,9 @@ def shift(runs: PaperRuns, pictures: Path) -> Iterator[str]:
         yield _mesh_of(table)
         yield _shift_table(table)
         yield "\n".join(_shift_sentences(table)) + "\n"
+        far = [table.mode[k] for k in set(modes_with_peak(table)) - set(modes_drawn(table))]
+        if far:
+            yield f"Too far for the picture: {', '.join(far)}.\n"
 
 
 def _shift_table(table: AlternativeTable) -> str:

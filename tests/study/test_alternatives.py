@@ -56,7 +56,8 @@ def test_every_share_is_there_and_its_modes_are_found(shift: AlternativeTable) -
     assert shift.name == (REST, *SHARES)
     assert len(shift.mode) >= 2
     assert np.all(np.isfinite(shift.frequency))
-    np.testing.assert_allclose(shift.assurance[0], 1.0, rtol=1e-12)
+    # the water's mass takes a solve, exact to 1e-10
+    np.testing.assert_allclose(shift.assurance[0], 1.0, rtol=1e-9)
     assert np.all(shift.assurance > 0.5)
 
 
@@ -106,4 +107,4 @@ def test_water_meshed_anew_gives_the_same_modes(loaded: LoadedBlade) -> None:
 def test_nothing_to_tabulate(loaded: LoadedBlade) -> None:
     none: list[Alternative] = []
     with pytest.raises(ValueError, match="no alternative"):
-        tabulate("nothing", loaded.case, none)
+        tabulate("nothing", loaded, none)

@@ -84,16 +84,38 @@ def tetrahedron_quality(nodes: FloatArray, connectivity: IntArray) -> Quality:
     return Quality(float(worst.min()), float(worst.mean()), float(ratio.min()))
 
 
+def jacobian_derivatives(
+    nodes: FloatArray, connectivity: IntArray, weights: FloatArray
+) -> FloatArray:
+    """Differentiate a weighted sum of Jacobian determinants by the places of each cell's nodes.
+
+    Parameters
+    ----------
+    nodes, connectivity
+        As in `tetrahedron_jacobians`.
+    weights : (m, 8) float array
+        Of the determinants.
+
+    Returns
+    -------
+    (m, 10, 3) float array
+        [m^2]
+    """
+    tangents = _tangents(nodes, connectivity)
+    cofactors = np.stack(
+        [np.cross(tangents[..., a - 2, :], tangents[..., a - 1, :]) for a in range(3)], axis=-2
+    )
+    weighted = weights[..., None, None] * cofactors
+    return np.asarray(np.einsum("qka,mqai->mki", _DERIVATIVES, weighted))
+
+
 # Edges of a regular tetrahedron, one a row
 _REGULAR = np.array([[1.0, 0.0, 0.0], [0.5, 0.75**0.5, 0.0], [0.5, 12.0**-0.5, (2 / 3) ** 0.5]])
 
 
 def _tangents(nodes: FloatArray, connectivity: IntArray) -> FloatArray:
     """Differentiate the position along the three local axes, (m, 8, 3, 3)."""
-    a, b = 0.58541019662496852, 0.13819660112501050
-    points = np.array([np.roll([a, b, b, b], k) for k in range(4)] + list(np.eye(4)))
-    derivatives = np.array([_tetra10_derivatives(p) for p in points])  # (q, 10, 3)
-    return np.asarray(np.einsum("qka,mki->mqai", derivatives, nodes[connectivity]))
+    return np.asarray(np.einsum("qka,mki->mqai", _DERIVATIVES, nodes[connectivity]))
 
 
 def _tetra10_derivatives(barycentric: FloatArray) -> FloatArray:
@@ -103,6 +125,11 @@ def _tetra10_derivatives(barycentric: FloatArray) -> FloatArray:
     corner = [(4 * lam - 1) * g for lam, g in zip(barycentric, gradients, strict=True)]
     middle = [4 * (barycentric[i] * gradients[j] + barycentric[j] * gradients[i]) for i, j in edges]
     return np.array(corner + middle)
+
+
+_GAUSS = (0.58541019662496852, *3 * (0.13819660112501050,))
+_POINTS = np.array([np.roll(_GAUSS, k) for k in range(4)] + list(np.eye(4)))
+_DERIVATIVES = np.array([_tetra10_derivatives(point) for point in _POINTS])  # (q, 10, 3)
 
 
 def _refuse_inverted(

@@ -5,7 +5,6 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import csr_matrix, diags_array
 
 from quietblade.case import Case
 from quietblade.geometry import Blade
@@ -14,15 +13,22 @@ from quietblade.mesh.motion import MeshMotion, solve_mesh_motion
 from quietblade.results.alternatives import AlternativeTable
 from quietblade.results.peaks import assign_peaks
 from quietblade.study import translate
+from quietblade.study.mode_tables import carried
 from quietblade.study.outcome import peak_table
 from quietblade.study.preflight import preflight
 from quietblade.study.run import run_key
 from quietblade.study.sound import Sound, solve_sound
 from quietblade.study.statics import Statics, solve_statics
-from quietblade.study.vibration import Share, Vibration, frequencies, solve_vibration
+from quietblade.study.vibration import (
+    Share,
+    Vibration,
+    frequencies,
+    solve_vibration,
+    symmetric_solver,
+)
 from quietblade.typing import FloatArray, Progress, silent
 from quietblade.vibroacoustics.bands import band_mean
-from quietblade.vibroacoustics.matching import match
+from quietblade.vibroacoustics.matching import Match, Product, match, wet_mass
 from quietblade.vibroacoustics.power import level
 
 NAN = float("nan")
@@ -92,33 +98,44 @@ def vibrate(
 
 
 def tabulate(
-    title: str, case: Case, alternatives: Iterable[Alternative], progress: Progress = silent
+    title: str,
+    loaded: LoadedBlade,
+    alternatives: Iterable[Alternative],
+    progress: Progress = silent,
 ) -> AlternativeTable:
     """Modes and peaks of alternatives on the nodes of one solid mesh; the first is the reference.
 
-    Modes are matched by the modal assurance criterion, each in the axes of its own sections
-    (theory: S2-15).
+    Modes are matched by the modal assurance criterion as in a run, in the mass of the reference
+    with the water's, each in the axes of its own sections (theory: S2-15).
 
     Parameters
     ----------
     title : str
         What is compared.
-    case : Case
-        Band and sweep.
+    loaded : LoadedBlade
+        Band and sweep of its case count, and the mesh, which is that of the reference.
     alternatives : iterable of Alternative
         Taken one after the other, so that a generator needs the memory of two only.
     progress : callable
     """
+    case = loaded.case
     first: Vibration | None = None
+    product: Product | None = None
     names, descriptions, rows = [], [], []
     for alternative in alternatives:
         vibration = alternative.vibration
         grid = frequencies(case, [vibration])
         sound = solve_sound(case, vibration, grid, progress)
-        first = first or vibration
+        if first is None or product is None:
+            first = vibration
+            product = wet_mass(first.operators, solver=symmetric_solver(case))
+        shapes = carried(loaded.mesh, vibration, first)
         names.append(alternative.name)
         descriptions.append(alternative.description)
-        rows.append((_columns(first, vibration, sound), _mean_level(sound)))
+        found = match(shapes, first.modes.vectors, product)
+        rows.append(
+            (_columns(vibration, sound, found, len(first.modes.vectors)), _mean_level(sound))
+        )
     if first is None:
         raise ValueError("there is no alternative to tabulate")
     columns = np.array([row for row, _ in rows])
@@ -138,16 +155,14 @@ def tabulate(
     )
 
 
-def _columns(first: Vibration, vibration: Vibration, sound: Sound) -> FloatArray:
+def _columns(vibration: Vibration, sound: Sound, found: Match, count: int) -> FloatArray:
     """Frequency, loss, similarity, peak and its level of each mode of the reference, (5, m)."""
     modes, damped = vibration.modes, vibration.damped
-    own, theirs = (v.shapes.reshape(len(v.shapes), -1) for v in (vibration, first))
-    found = match(own, theirs, csr_matrix(diags_array(np.repeat(first.masses, 3))))
     loss = modes.loss_factor.copy()
     loss[damped.start[damped.converged]] = damped.loss_factor[damped.converged]
     names = vibration.naming.name
     peaks = assign_peaks(names, modes.frequency, peak_table(sound))
-    columns = np.full((5, len(first.naming.name)), NAN)
+    columns = np.full((5, count), NAN)
     for k in np.flatnonzero(found.partner >= 0):
         peak = peaks.get(names[k])
         columns[:, found.partner[k]] = (

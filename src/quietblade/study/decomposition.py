@@ -59,7 +59,7 @@ def decompose_shift(
         A stage failed.
     """
     known = load_blade(case, progress) if loaded is None else loaded
-    return tabulate("From C0 to C1", case, _alternatives(known, progress), progress)
+    return tabulate("From C0 to C1", known, _alternatives(known, progress), progress)
 
 
 def _alternatives(loaded: LoadedBlade, progress: Progress) -> Iterator[Alternative]:

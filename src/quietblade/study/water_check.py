@@ -43,7 +43,7 @@ def compare_water(
         The water cannot be meshed around the deformed blade.
     """
     known = load_blade(case, progress) if loaded is None else loaded
-    return tabulate("Water mesh of C1", case, _alternatives(known, progress), progress)
+    return tabulate("Water mesh of C1", known, _alternatives(known, progress), progress)
 
 
 def remeshed(loaded: LoadedBlade, progress: Progress = silent) -> LoadedBlade:

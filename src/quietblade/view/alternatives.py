@@ -30,18 +30,28 @@ STEPS: Mapping[str, tuple[str, str]] = {
 """Alternatives of a decomposition in the order in which they add up, their labels and colours."""
 
 _ALONE = "stress"
+_DRAWN = 25.0  # %: a mode that moves farther is another one, and would flatten all the others
 _GROUP = 0.8  # width of a group of bars
 
 
 def modes_with_peak(table: AlternativeTable) -> tuple[int, ...]:
-    """Columns of the modes that make a peak in the first and the last alternative."""
-    seen = np.isfinite(table.peak_level[[0, -1]]).all(axis=0)
-    return tuple(np.flatnonzero(seen).tolist())
+    """Columns of the modes that are in both and make a peak in the first or last alternative."""
+    seen = np.isfinite(table.peak_level[[0, -1]]).any(axis=0)
+    matched = np.isfinite(table.frequency[[0, -1]]).all(axis=0)
+    return tuple(np.flatnonzero(seen & matched).tolist())
+
+
+def modes_drawn(table: AlternativeTable) -> tuple[int, ...]:
+    """Columns of the modes with a peak that keep near their frequency."""
+    change = 100.0 * np.abs(table.frequency[-1] / table.frequency[0] - 1.0)
+    return tuple(k for k in modes_with_peak(table) if change[k] <= _DRAWN)
 
 
 @styled
 def draw_shift(tables: Mapping[str, AlternativeTable]) -> Figure:
     """Change of frequency and peak level from C0 to C1, step by step; blades side by side.
+
+    Modes that move by more than a quarter are left out (`modes_drawn`).
 
     Parameters
     ----------
@@ -51,7 +61,7 @@ def draw_shift(tables: Mapping[str, AlternativeTable]) -> Figure:
     figure = new_figure(4.4)
     panels = figure.subplots(2, len(tables), squeeze=False, sharex="col")
     for (upper, lower), (name, table) in zip(panels.T, tables.items(), strict=True):
-        shown = modes_with_peak(table)
+        shown = modes_drawn(table)
         _waterfall(upper, table, shown)
         _levels(lower, table, shown)
         lower.set_xticks(range(len(shown)), [table.mode[k] for k in shown])
