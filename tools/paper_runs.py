@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Runs and tables of the paper's study, as the page finds them in their folder."""
 
+import csv
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -91,6 +92,15 @@ class PaperRuns:
             for row in rows
             if row["uncertainty"] is not None
         }
+
+    @cached_property
+    def closest(self) -> dict[str, tuple[str, str]]:
+        """Closest figure of each claim over all choices that were tried, and how many met it."""
+        file = self.calibration / "closest.csv"
+        if not file.is_file():
+            return {}
+        with file.open(encoding="utf-8", newline="") as lines:
+            return {row["claim"]: (row["closest"], row["met by"]) for row in csv.DictReader(lines)}
 
     @cached_property
     def _loaded(self) -> dict[str, Result]:

@@ -77,7 +77,7 @@ def claims(runs: PaperRuns, _: Path) -> Iterator[str]:
             for claim in judged[blade, shown[0]].values()
         ]
         yield markdown(heads, rows)
-    yield from _misses(judged, shown)
+    yield from _misses(judged, shown, runs.closest)
 
 
 def verdict(claim: Claim | None) -> str:
@@ -117,19 +117,32 @@ def changes_of(result: Result) -> str:
     return ", ".join(f"`{key}` = {value}" for key, value in found.items())
 
 
-def _misses(judged: dict[tuple[str, str], dict[str, Claim]], shown: Sequence[str]) -> Iterator[str]:
-    """Claims that no variant meets."""
+def _misses(
+    judged: dict[tuple[str, str], dict[str, Claim]],
+    shown: Sequence[str],
+    closest: dict[str, tuple[str, str]],
+) -> Iterator[str]:
+    """Claims that no variant meets, and how near the other choices come to them."""
     missed = [
-        f"{blade}: {claim.statement} (paper: {claim.paper}; here: {claim.computed})"
+        f"{blade}: {claim.statement} (paper: {claim.paper}; here: {claim.computed}{tried})"
         for blade in BLADES
         for key, claim in judged[blade, shown[0]].items()
         if all(judged[blade, v].get(key, claim).agrees is False for v in shown)
+        for tried in [_tried(*closest[key]) if key in closest else ""]
     ]
     if not missed:
         yield "Every claim agrees in one of the variants at least.\n"
         return
     yield f"{len(missed)} claims agree in none of these variants:\n"
     yield "\n".join(f"* {text}" for text in missed) + "\n"
+    if closest:
+        yield "The closest are those of all choices within their bounds that were tried, on coarse"
+        yield "meshes ([which moves what](#which-open-choice-moves-which-claim)).\n"
+
+
+def _tried(value: str, met: str) -> str:
+    count, _, of = met.partition(" of ")
+    return f"; closest of {of} other choices: {value}, {'none' if count == '0' else count} met it"
 
 
 # --- loss --------------------------------------------------------------------------------------

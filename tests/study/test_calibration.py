@@ -177,6 +177,7 @@ def test_closest_run_to_each_claim_is_named(file: Path) -> None:
     met, of = rows["paper/composite/film-shear-strain"][3].split(" of ")
     assert 0 < int(met) <= int(of)
     assert rows["paper/composite/film-shear-strain"][4].startswith("evaluations/")
+    assert (root / "closest.csv").read_text().startswith("claim,paper,closest,met by,run\n")
 
 
 def test_failed_evaluations_are_kept_with_their_reason(file: Path) -> None:

@@ -12,6 +12,7 @@ from quietblade.results.files import ResultError, write_text
 from quietblade.results.model import Result
 from quietblade.results.store import RunFolder
 from quietblade.results.study_claims import closest_runs, closest_table
+from quietblade.results.study_table import as_csv
 from quietblade.results.table import Table, number
 from quietblade.results.tables import as_text
 from quietblade.study.calibration import Fitted
@@ -27,8 +28,14 @@ def fitted_tables(words: Calibration, found: Fitted, root: Path) -> tuple[Table,
 
 
 def closest(root: Path) -> Table:
-    """Closest run to each claim of the paper, of all runs below a calibration's folder."""
-    return closest_table(closest_runs(_runs(root)))
+    """Closest run to each claim of the paper, of all runs below a calibration's folder.
+
+    The table is also written there, as ``closest.csv``.
+    """
+    table = closest_table(closest_runs(_runs(root)))
+    if table.rows:
+        write_text(root / "closest.csv", as_csv(table.columns, table.rows))
+    return table
 
 
 def _runs(root: Path) -> Iterator[tuple[str, Result]]:
@@ -74,7 +81,7 @@ def _targets(words: Calibration, found: Fitted) -> Table:
 
 
 def write_fitted(words: Calibration, found: Fitted, root: Path) -> tuple[Table, ...]:
-    """Write ``calibration.json`` and ``calibration.txt`` (with the reading); return the tables."""
+    """Write ``calibration.json``, ``.txt`` (with the reading) and ``closest.csv``."""
     tables = fitted_tables(words, found, root)
     stem = f"calibration-{found.reading}" if found.reading else "calibration"
     data: dict[str, Any] = {
@@ -94,7 +101,7 @@ def write_fitted(words: Calibration, found: Fitted, root: Path) -> tuple[Table, 
 
 
 def write_sensitivities(words: Calibration, found: Sensitivities, root: Path) -> tuple[Table, ...]:
-    """Write ``sensitivities.csv`` and ``sensitivities.txt``; return the tables."""
+    """Write ``sensitivities.csv`` and ``.txt``, and ``closest.csv``."""
     names = tuple(target.figure for target in words.targets)
     claims = any(name.startswith("paper/") for _, name in found.names())
     moved = (found.table() if claims else found.table(names), closest(root))

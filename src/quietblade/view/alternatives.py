@@ -145,7 +145,7 @@ def draw_costs(
     axes.set_yticks(range(len(changes)), list(changes))
     axes.invert_yaxis()
     axes.axvline(0.0, color=GREY, linewidth=0.7)
-    axes.margins(x=0.12)
+    axes.margins(x=0.18)
     axes.set(xlabel=f"Change of the level [{unit}]", title=title)
     axes.legend(loc="best")
     return figure
