@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from quietblade.cli.common import ExitCode, console
+from quietblade.cli.common import ExitCode, console, error_console
 from quietblade.cli.progress import ProgressDisplay
+from quietblade.cli.written import Written, show_written
 
 if TYPE_CHECKING:
     from quietblade.results.model import RunRecord
@@ -28,6 +29,9 @@ def report(
         bool, typer.Option("--pdf", help="Write a PDF instead; needs the extra quietblade[pdf].")
     ] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Show errors only.")] = False,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print the file as JSON; progress goes to stderr.")
+    ] = False,
 ) -> ExitCode:
     """Write a report of a run as one self-contained HTML file, or as a PDF."""
     from quietblade.results.files import replacing, write_text  # noqa: PLC0415  # help stays fast
@@ -41,7 +45,7 @@ def report(
     file = out or directory / ("report.pdf" if pdf else "report.html")
     result = folder.load()
     words, cited = case_words(folder.case, result.run)
-    with ProgressDisplay(console, quiet=quiet) as progress:
+    with ProgressDisplay(error_console if as_json else console, quiet=quiet) as progress:
         page = render_report(
             folder,
             result,
@@ -56,7 +60,9 @@ def report(
                 temporary.write_bytes(pdf_of(page))
         else:
             write_text(file, page)
-    if not quiet:
+    if as_json:
+        show_written([Written("report", file)])
+    elif not quiet:
         console.print(f"report: {file} ({file.stat().st_size / 1e6:.1f} MB)", soft_wrap=True)
     return ExitCode.DONE
 
