@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """``quietblade report``: one HTML file to hand on, or a PDF."""
 
-from ast import literal_eval
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -70,6 +69,7 @@ def report(
 def case_words(file: Path, run: "RunRecord") -> "tuple[tuple[Table, ...], tuple[Table, ...]]":
     """Say a run's case in words, as ``check`` does, or why that cannot be; and what to cite."""
     from quietblade.case import Case, InvalidCaseError  # noqa: PLC0415
+    from quietblade.case.changes import read_changes  # noqa: PLC0415
     from quietblade.cli.describe import case_tables  # noqa: PLC0415
     from quietblade.results.table import Table  # noqa: PLC0415
     from quietblade.study.citations import citation_table  # noqa: PLC0415
@@ -77,7 +77,7 @@ def case_words(file: Path, run: "RunRecord") -> "tuple[tuple[Table, ...], tuple[
     from quietblade.study.run import run_key  # noqa: PLC0415
 
     try:
-        case = Case.load(file).varied(_changes(run.case_text))
+        case = Case.load(file).varied(read_changes(run.case_text))
         if run_key(case, run.code_version) == run.content_key:
             told = case_tables(case, preflight(case))
             words = tuple(Table(title, (), tuple(rows)) for title, rows in told)
@@ -86,13 +86,3 @@ def case_words(file: Path, run: "RunRecord") -> "tuple[tuple[Table, ...], tuple[
     except InvalidCaseError as error:
         why = str(error)  # for instance, a file beside the case is gone
     return (Table("In words", (), ((f"{file.name} cannot be told in words", why),)),), ()
-
-
-def _changes(text: str) -> dict[str, Any]:
-    """Read back what a study or a script has changed: comments that `Case.varied` leaves."""
-    lines = [line.removeprefix(_MARK) for line in text.splitlines() if line.startswith(_MARK)]
-    pairs = (line.partition(" = ") for line in lines)
-    return {key: literal_eval(value) for key, _, value in pairs}
-
-
-_MARK = "# changed in memory: "
