@@ -103,7 +103,7 @@ def test_a_cambered_foil_may_begin_on_the_axis() -> None:
     model = LiftingLineInflow(5.0, 0.0)
     on_axis, away = (strip_loads(rectangle(3.0, z, camber=0.04), model) for z in (0.0, 7.0))
     np.testing.assert_allclose(on_axis.loads.induced, away.loads.induced, atol=1e-9)
-    swept = rectangle(3.0, camber=0.04) + [0.0, 0.2, 0.0]  # its root lies beside the axis
+    swept = rectangle(3.0, camber=0.04) + np.array([0.0, 0.2, 0.0])  # its root lies beside the axis
     np.testing.assert_allclose(
         strip_loads(swept, model).loads.induced, away.loads.induced, atol=1e-9
     )
