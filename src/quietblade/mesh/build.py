@@ -15,6 +15,7 @@ from quietblade.errors import InvertedCellError, MeshError
 from quietblade.geometry import Blade
 from quietblade.mesh.cad import Patch, Solids, build_solids
 from quietblade.mesh.cover import clear_size
+from quietblade.mesh.growth import GROWTH
 from quietblade.mesh.model import CellBlock, Mesh, patch_name
 from quietblade.mesh.quality import poor_cell_notices, region_quality
 from quietblade.typing import FloatArray, IntArray
@@ -26,10 +27,6 @@ CELL_KINDS = {
     19: ("pyramid13", (0, 1, 2, 3, 4, 5, 8, 10, 6, 7, 9, 11, 12)),
 }
 TRIANGLE6 = 9
-
-GROWTH = 0.6
-"""Growth of the water's cells with the distance from the blade: 0.4 changes the frequencies of the
-first eight wet modes by less than 0.2 %."""
 
 _ATTEMPTS = (1.0, 0.98, 0.96, 0.94)
 """Factors of the cell size that are tried: where the film's cover is thin, a cell that is flat or

@@ -13,7 +13,7 @@ from scipy.spatial import cKDTree
 from scipy.stats import qmc
 
 from quietblade.geometry import Blade
-from quietblade.mesh.build import GROWTH
+from quietblade.mesh.growth import GROWTH
 from quietblade.typing import FloatArray
 
 UNCERTAINTY = 0.15
