@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Sections of the paper's page: tables, and sentences that follow from their numbers."""
 
-import re
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
 
+from quietblade.case.changes import read_changes
 from quietblade.results.claims import BLADES, Claim, judge_claims
 from quietblade.results.model import Result
 from quietblade.view.directivity import draw_polar
@@ -14,7 +14,6 @@ from quietblade.view.paper import save
 from tools.paper_runs import PaperRuns, modes_in_band
 
 _ACROSS = "xy"  # plane of the polar diagrams: normal to the span
-_CHANGED = re.compile(r"^# changed in memory: (\S+) = (.*)$", re.M)
 
 
 def markdown(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
@@ -108,13 +107,14 @@ def _choices(runs: PaperRuns, shown: Sequence[str]) -> str:
 
 def changed(result: Result, key: str) -> str:
     """Value that a run gave to a key of its case file; a dash if it did not."""
-    return dict(_CHANGED.findall(result.run.case_text)).get(key, "–")
+    found = read_changes(result.run.case_text)
+    return repr(found[key]) if key in found else "–"
 
 
 def changes_of(result: Result) -> str:
     """Tell what a run changed in its case file."""
-    found = dict(_CHANGED.findall(result.run.case_text))
-    return ", ".join(f"`{key}` = {value}" for key, value in found.items())
+    found = read_changes(result.run.case_text)
+    return ", ".join(f"`{key}` = {value!r}" for key, value in found.items())
 
 
 def _misses(

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from quietblade.case import Case
     from quietblade.results.model import Result
+    from quietblade.results.store import load
     from quietblade.study.steps import (
         collect,
         frequencies,
-        load,
         make_blade,
         make_mesh,
         preset,
@@ -25,12 +25,13 @@ if TYPE_CHECKING:
 __version__ = version("quietblade")
 
 _STEPS = (
-    "collect", "frequencies", "load", "make_blade", "make_mesh", "preset", "run", "solve_modes",
+    "collect", "frequencies", "make_blade", "make_mesh", "preset", "run", "solve_modes",
     "solve_response", "solve_static", "tabulate_static",
 )  # fmt: skip
 _PLACES = {
     "Case": "quietblade.case",
     "Result": "quietblade.results.model",
+    "load": "quietblade.results.store",
     **dict.fromkeys(_STEPS, "quietblade.study.steps"),
 }
 

@@ -21,7 +21,11 @@ class MaterialError(QuietbladeError):
 
 
 class MeshError(QuietbladeError):
-    """The mesh cannot be built, or an element is inverted."""
+    """The mesh cannot be built, or a cell is inverted."""
+
+
+class InvertedCellError(MeshError):
+    """A cell of a mesh is inverted; cells of another size may not be."""
 
 
 class ConvergenceError(QuietbladeError):

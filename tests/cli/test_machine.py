@@ -2,6 +2,7 @@
 """What programs read: JSON on standard output and nothing else, and exit codes."""
 
 import json
+import re
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -80,6 +81,44 @@ def test_json_and_nothing_else(
     assert holds is None or holds in data
 
 
+@pytest.mark.parametrize(
+    ("words", "kinds"),
+    [
+        ("new mine --force", {"case"}),
+        ("new mine --schema --force", {"case", "schema"}),
+        ("new --schema", {"schema"}),
+        ("export blade.toml --step blade.step", {"step"}),
+        ("export run --csv tables --msh blade.msh", {"csv", "msh"}),
+    ],
+)
+def test_files_that_are_written(
+    words: str, kinds: set[str], ask: Callable[[str], tuple[int, Any]]
+) -> None:
+    code, data = ask(words)
+    assert (code, list(data)) == (ExitCode.DONE, ["files"])
+    assert {file["kind"] for file in data["files"]} == kinds
+    for file in data["files"]:
+        assert list(file) == ["kind", "path", "bytes"]
+        assert Path(file["path"]).stat().st_size == file["bytes"] > 0
+    if "csv" in kinds:
+        assert {file["path"] for file in data["files"] if file["kind"] == "csv"} == {
+            str(path) for path in Path("tables").iterdir()
+        }
+
+
+def test_a_deck_comes_with_what_is_to_be_found_again(
+    ask: Callable[[str], tuple[int, Any]],
+) -> None:
+    hydrofoil = preset_text("hydrofoil")
+    text = re.sub(r"(?m)^size = .*", 'size = "40 mm"', hydrofoil)
+    Path("foil.toml").write_text(text, encoding="utf-8")
+    code, data = ask("export foil.toml --out foil.inp")
+    assert (code, data["converged"]) == (ExitCode.DONE, True)
+    assert [file["kind"] for file in data["files"]] == ["deck"]
+    assert len(data["tip_displacement_m"]) == 3
+    assert 1e-5 < max(map(abs, data["tip_displacement_m"])) < 1e-1
+
+
 def test_run_and_show_print_the_same(ask: Callable[[str], tuple[int, Any]]) -> None:
     assert ask("run blade.toml --out run") == ask("show run")
 
@@ -101,6 +140,14 @@ def test_the_plan_of_a_study(ask: Callable[[str], tuple[int, Any]]) -> None:
         ("section naca2412 --thickness 0.1", ExitCode.CASE_WRONG, "in its name"),
         ("show nowhere", ExitCode.FAILED, "no result.nc"),
         ("cite nowhere", ExitCode.FAILED, "nowhere"),
+        ("plot nowhere", ExitCode.FAILED, "no result.nc"),
+        ("plot run --format gif", ExitCode.CASE_WRONG, "still pictures"),
+        ("report nowhere", ExitCode.FAILED, "no result.nc"),
+        ("new", ExitCode.CASE_WRONG, "the NAME of a case"),
+        ("new --ask", ExitCode.CASE_WRONG, "somebody to answer"),
+        ("new blade", ExitCode.CASE_WRONG, "exists already"),
+        ("export blade.toml --vtkhdf fields", ExitCode.CASE_WRONG, "needs results"),
+        ("export run --vtkhdf fields", ExitCode.FAILED, "static.vtu is missing"),
         ("show", ExitCode.CASE_WRONG, "Missing argument"),
         ("check --prest", ExitCode.CASE_WRONG, "--prest"),
     ],

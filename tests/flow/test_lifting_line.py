@@ -75,9 +75,11 @@ def test_angle_is_the_inverse_of_the_span_parameter(root: str) -> None:
     np.testing.assert_allclose(to_angle(centres, root), (np.arange(10) + 0.5) / 10)  # type: ignore[arg-type]
 
 
-def rectangle(span: float, offset: float = 0.0, n: int = 61, incidence: float = 0.05) -> FloatArray:
+def rectangle(
+    span: float, offset: float = 0.0, n: int = 61, incidence: float = 0.05, camber: float = 0.0
+) -> FloatArray:
     """Straight wing (sections, n, 3) of chord 1 between z = offset and offset + span."""
-    contour = naca(0.06, n=n) - [0.5, 0.0]
+    contour = naca(0.06, camber, n=n) - [0.5, 0.0]
     c, s = np.cos(incidence), np.sin(incidence)
     stations = 0.5 * (1.0 - np.cos(np.linspace(0.0, np.pi, 41)))
     points = np.zeros((41, n, 3))
@@ -95,6 +97,16 @@ def test_mirrored_half_is_half_of_the_whole_wing(control: str) -> None:
     )
     assert 2.0 * half.total.lift == pytest.approx(whole.total.lift, rel=1e-4)
     assert 2.0 * half.total.force[0] == pytest.approx(whole.total.force[0], rel=1e-3)
+
+
+def test_a_cambered_foil_may_begin_on_the_axis() -> None:
+    model = LiftingLineInflow(5.0, 0.0)
+    on_axis, away = (strip_loads(rectangle(3.0, z, camber=0.04), model) for z in (0.0, 7.0))
+    np.testing.assert_allclose(on_axis.loads.induced, away.loads.induced, atol=1e-9)
+    swept = rectangle(3.0, camber=0.04) + np.array([0.0, 0.2, 0.0])  # its root lies beside the axis
+    np.testing.assert_allclose(
+        strip_loads(swept, model).loads.induced, away.loads.induced, atol=1e-9
+    )
 
 
 def test_sections_carry_the_circulation_of_the_line_and_the_tip_none() -> None:

@@ -5,10 +5,12 @@ import ngsolve as ngs
 import numpy as np
 import pytest
 
-from quietblade.errors import MeshError
+from quietblade.errors import InvertedCellError, MeshError
 from quietblade.geometry import Blade
-from quietblade.mesh import INTERFACE, Mesh, MeshSpec, build_mesh
+from quietblade.mesh import INTERFACE, Mesh, MeshSpec, build, build_mesh
+from quietblade.mesh.cad import Solids
 from quietblade.mesh.quality import tetrahedron_jacobians
+from quietblade.typing import FloatArray
 from tests.conftest import PAPER_FILM, PATCH, make_paper_blade, make_twisted_blade
 
 
@@ -80,15 +82,41 @@ def test_blade_without_film_meshes() -> None:
     assert set(mesh.cells) == {"blade", "water"}
 
 
-def test_cells_too_coarse_for_the_curved_blade_are_refused_with_the_place() -> None:
-    with pytest.raises(MeshError, match=r"inverted at x = .* m, y = .* m, z = .* m"):
-        build_mesh(make_twisted_blade(), MeshSpec(0.1, (0.0, 0.0, 0.7), 1.3, (PATCH,), 0.6))
-
-
 def test_film_that_pierces_the_blade_is_refused() -> None:
     film = dataclasses.replace(PAPER_FILM, thickness=8e-3)
     with pytest.raises(MeshError, match="film"):
         build_mesh(make_paper_blade(film), MeshSpec(0.05, (0.0, 0.0, 0.7), 1.3, (PATCH,), 0.6))
+
+
+@pytest.fixture
+def sizes(monkeypatch: pytest.MonkeyPatch) -> list[float]:
+    """Sizes of the cells that are tried."""
+    tried: list[float] = []
+    build_once = build._mesh
+
+    def watched(blade: Blade, solids: Solids, spec: MeshSpec, centre: FloatArray) -> Mesh:
+        tried.append(spec.size)
+        return build_once(blade, solids, spec, centre)
+
+    monkeypatch.setattr(build, "_mesh", watched)
+    return tried
+
+
+def test_other_sizes_are_tried_after_an_inverted_cell(sizes: list[float]) -> None:
+    with pytest.raises(InvertedCellError, match="inverted at x"):
+        build_mesh(make_twisted_blade(), MeshSpec(0.1, (0.0, 0.0, 0.7), 1.3, (PATCH,), 0.6))
+    np.testing.assert_allclose(sizes, [0.1, 0.098, 0.096, 0.094])
+
+
+def test_what_gmsh_refuses_is_refused_at_once(
+    sizes: list[float], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # solids that gmsh cannot mesh: the cells on the faces may be as large as the blade
+    monkeypatch.setattr(build, "clear_size", lambda blade: lambda at: np.inf)
+    film = dataclasses.replace(PAPER_FILM, thickness=2.3e-3)
+    with pytest.raises(MeshError, match=r"gmsh could not mesh the blade with cells of 0\.2 m"):
+        build_mesh(make_paper_blade(film), MeshSpec(0.2, (0.0, 0.0, 0.7), 1.3, (PATCH,), 0.6))
+    assert sizes == [0.2]
 
 
 def test_jacobians_tell_an_inverted_tetrahedron() -> None:

@@ -44,6 +44,19 @@ def test_round_trip_through_the_file_is_exact(blade: str, tmp_path: Path) -> Non
     assert_same(dataset.from_tree(dataset.read(tmp_path / "result.nc")), result)
 
 
+def test_reading_finds_what_xarray_finds(tmp_path: Path) -> None:
+    file = tmp_path / "result.nc"
+    dataset.write(dataset.to_tree(make_result()), file)
+    ours = dataset.read(file)
+    with xr.open_datatree(file, engine="h5netcdf") as tree:
+        theirs = tree.load()
+    assert ours.attrs == theirs.attrs
+    assert [node.path for node in ours.subtree] == [node.path for node in theirs.subtree]
+    for mine, other in zip(ours.subtree, theirs.subtree, strict=True):
+        assert list(mine.variables) == list(other.variables)
+        assert mine.to_dataset().equals(other.to_dataset())
+
+
 def test_empty_tables_and_missing_figures_survive(tmp_path: Path) -> None:
     result = make_result()
     c0 = result.configurations["C0"]

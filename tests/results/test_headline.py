@@ -236,3 +236,18 @@ def test_levels_of_random_loads_are_densities_everywhere() -> None:
     levels = [f.unit for f in headline_figures(result) if f.unit.startswith("dB re")]
     assert set(levels) == {"dB re 1 pW/Hz"}
     assert "1 pW/Hz if random" in str(type(summary.sound_power).model_fields["C0_db"].description)
+
+
+def test_a_foil_that_does_not_turn_has_no_figures_of_a_rotor() -> None:
+    result = make_result()
+    unknown = np.full(3, np.nan)
+    names = ("advance_ratio", "thrust_coefficient", "torque_coefficient", "efficiency")
+    figures = replace(
+        result.static.performance,
+        **dict.fromkeys((*names, "inviscid_efficiency"), unknown),
+        torque=np.array([1.0, np.nan, np.nan]),  # known in one state
+    )
+    summary = summarise(with_static(result, performance=figures))
+    (table,) = (t for t in summary_tables(summary) if t.title == "Performance")
+    assert [row[0] for row in table.rows] == ["Thrust T [N]", "Torque Q [N m]"]
+    assert table.rows[1][1:4] == ("1.00", "-", "-")

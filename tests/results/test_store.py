@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """The folder of a run: whole files or none."""
 
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -74,3 +76,15 @@ def test_a_damaged_result_is_named(tmp_path: Path) -> None:
     (tmp_path / "result.nc").write_text("not netCDF")
     with pytest.raises(ResultError, match=r"result\.nc: not a readable netCDF file"):
         RunFolder(tmp_path).load()
+
+
+def test_loading_needs_no_programs_that_compute(tmp_path: Path) -> None:
+    RunFolder(tmp_path).save(make_result())
+    code = (
+        "import sys, quietblade; quietblade.load(sys.argv[1]);"
+        "print(sorted(set(sys.modules) & {'ngsolve', 'gmsh', 'pyvista', 'matplotlib'}))"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code, str(tmp_path)], capture_output=True, text=True, check=True
+    )
+    assert done.stdout.strip() == "[]"

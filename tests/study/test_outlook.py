@@ -9,7 +9,7 @@ import pytest
 from quietblade.case import Case
 from quietblade.case.presets import preset_text
 from quietblade.linalg.trial import trial_seconds, trial_system
-from quietblade.mesh import build, build_mesh
+from quietblade.mesh import build_mesh
 from quietblade.study import costs, forecast, translate
 from quietblade.study.assumptions import Assumption
 from quietblade.study.forecast import Size
@@ -42,10 +42,6 @@ def size_of(case: Case) -> Size:
 
 def ahead_of(case: Case) -> Outlook:
     return look_ahead(case, preflight(case), trial=costs._TRIAL)
-
-
-def test_the_cells_grow_as_the_mesher_is_told() -> None:
-    assert forecast.GROWTH == build._GROWTH
 
 
 @pytest.mark.parametrize(("film", "size"), [(False, 0.06), (True, 0.04)])

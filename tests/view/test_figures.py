@@ -3,6 +3,7 @@
 
 import json
 import re
+import sys
 from collections.abc import Iterator
 from dataclasses import fields, replace
 from pathlib import Path
@@ -19,7 +20,6 @@ from PIL import Image
 from quietblade.cli.main import execute
 from quietblade.results.headline import summarise
 from quietblade.results.store import RunFolder
-from quietblade.view.animation import draw_animations
 from quietblade.view.figures import draw_joint_figures
 from tests.results.synthetic import make_result
 
@@ -156,17 +156,24 @@ def test_a_folder_without_a_result(
     assert not list(tmp_path.iterdir())
 
 
-def test_animations_move(tmp_path: Path, runs: tuple[RunFolder, ...]) -> None:
+@pytest.fixture
+def moving(tmp_path: Path, runs: tuple[RunFolder, ...]) -> RunFolder:
+    """A run of one configuration with one mode."""
     result = make_result("composite")
     first = result.configurations["C1"]
     few = replace(
         first.modes, **{f.name: getattr(first.modes, f.name)[:1] for f in fields(first.modes)}
     )
-    result = replace(result, configurations={"C1": replace(first, modes=few)})
     folder = RunFolder(tmp_path)
+    folder.save(replace(result, configurations={"C1": replace(first, modes=few)}))
     (tmp_path / "fields").symlink_to(runs[1].root / "fields")
-    files = draw_animations(folder, result)
-    assert [file.name for file in files] == ["steady.gif", f"mode-C1-{few.name[0]}.gif"]
+    return folder
+
+
+def test_animations_move(moving: RunFolder) -> None:
+    assert execute(["plot", str(moving.root), "--animate", "--quiet"]) == 0
+    files = sorted(moving.figures.iterdir())
+    assert [file.name for file in files] == ["mode-C1-B5.gif", "steady.gif"]
     for file in files:
         assert file.stat().st_size < 2e6
         with Image.open(file) as picture:
@@ -179,8 +186,52 @@ def test_animations_move(tmp_path: Path, runs: tuple[RunFolder, ...]) -> None:
         assert np.any(np.abs(frames[0] - frames[1]) > 50.0)
 
 
-def test_animations_are_of_single_runs(
-    runs: tuple[RunFolder, ...], capsys: pytest.CaptureFixture[str]
+def test_films_show_what_the_animations_show(
+    moving: RunFolder, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert execute(["plot", "--animate", "--format", "pdf", str(runs[0].root)]) == 1
-    assert "GIF" in capsys.readouterr().err
+    ffmpeg = pytest.importorskip("imageio_ffmpeg")
+    words = ["plot", str(moving.root), "--animate", "-f", "gif", "-f", "mp4", "--json"]
+    assert execute(words) == 0
+    files = json.loads(capsys.readouterr().out)["files"]
+    assert {file["kind"] for file in files} == {"animation"}
+    for gif, mp4 in zip(files[::2], files[1::2], strict=True):
+        assert mp4["path"] == gif["path"].replace(".gif", ".mp4")
+        assert 1000 < mp4["bytes"] == Path(mp4["path"]).stat().st_size < 1e6
+        film = ffmpeg.read_frames(mp4["path"])
+        about = next(film)
+        width, height = about["size"]
+        frames = [np.frombuffer(frame, np.uint8).reshape(height, width, 3) for frame in film]
+        assert (len(frames), about["fps"], about["codec"]) == (4 * 16, 10.0, "h264")
+        with Image.open(gif["path"]) as picture:
+            picture.seek(5)
+            still = np.asarray(picture.convert("RGB"))
+        assert 0 <= width - still.shape[1] <= 1
+        assert 0 <= height - still.shape[0] <= 1
+        film_frame = frames[16 + 5][: still.shape[0], : still.shape[1]]
+        assert np.mean(np.abs(film_frame.astype(float) - still)) < 4.0
+        assert np.mean(np.abs(frames[0].astype(float) - frames[8])) > 1.0
+
+
+def test_a_film_without_its_program_is_refused_before_anything_is_drawn(
+    moving: RunFolder, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
+    assert execute(["plot", str(moving.root), "--animate", "--format", "mp4"]) == 3
+    assert 'pip install "quietblade[mp4]"' in " ".join(capsys.readouterr().err.split())
+    assert not moving.figures.exists()
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        ("--animate --format pdf", "pdf: moving pictures are gif, mp4"),
+        ("--format mp4", "mp4: still pictures are png, pdf, svg; --animate"),
+        ("--animate --joint", "--joint"),
+    ],
+)
+def test_kinds_of_pictures_that_do_not_go_together(
+    words: str, said: str, runs: tuple[RunFolder, ...], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert execute(["plot", *words.split(), *(str(run.root) for run in runs)]) == 1
+    shown = capsys.readouterr().err.replace("\u2502", " ")
+    assert said in " ".join(shown.split())

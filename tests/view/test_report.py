@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """The report: order, numbers, and that it needs nothing but itself."""
 
+import json
 import re
 import shutil
 import sys
@@ -212,13 +213,15 @@ def test_the_case_is_told_in_words_as_it_was_run(tmp_path: Path) -> None:
     assert "not the case of this result" in other.rows[0][1]
 
 
-def test_pdf(run: RunFolder) -> None:
+def test_pdf(run: RunFolder, capsys: pytest.CaptureFixture[str]) -> None:
     try:
         require_pdf()
     except PdfError as error:
         pytest.skip(str(error))
-    assert execute(["report", str(run.root), "--pdf", "--quiet"]) == 0
+    assert execute(["report", str(run.root), "--pdf", "--json"]) == 0
     data = (run.root / "report.pdf").read_bytes()
+    told = {"kind": "report", "path": str(run.root / "report.pdf"), "bytes": len(data)}
+    assert json.loads(capsys.readouterr().out) == {"files": [told]}
     assert data.startswith(b"%PDF-")
     assert data.count(b"/Subtype /Image") >= len(NAMES)  # every figure is in it
 

@@ -14,6 +14,7 @@ from pydantic import Field, PrivateAttr, ValidationError, model_validator
 
 from quietblade.card import Card, Shown
 from quietblade.case.campbell import CampbellWords
+from quietblade.case.changes import with_changes
 from quietblade.case.excitation import Excitations, RootMotionWords, TransferWords
 from quietblade.case.explain import explain, material_findings
 from quietblade.case.far_field import BandsWords, FarFieldWords, LimitWords
@@ -193,9 +194,7 @@ class Case(Shown, Words):
             table[last] = value
             changed = (*tables, last)
             lines = {path: n for path, n in lines.items() if path[: len(changed)] != changed}
-        text = self._source.text + "".join(
-            f"# changed in memory: {key} = {value!r}\n" for key, value in changes.items()
-        )
+        text = with_changes(self._source.text, changes)
         return self._build(replace(self._source, data=data, lines=lines, text=text))
 
     @property

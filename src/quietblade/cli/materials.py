@@ -41,7 +41,9 @@ def materials(
         console.print(f"  source: {SOURCE_OF[entry]}", markup=False)
         console.print(f"  note:   {NOTE_OF[entry]}", markup=False)
         if name is not None:
-            plain = library_material(entry).model_dump(mode="json", exclude_none=True)
+            plain = library_material(entry).model_dump(
+                mode="json", exclude_none=True, exclude={"law", "source"}
+            )
             for key, value in plain.items():
                 console.print(f"  {key} = {value}", markup=False)
     return ExitCode.DONE

@@ -9,6 +9,7 @@ import typer
 
 from quietblade.cli.common import console
 from quietblade.cli.files import case_path, write_file, write_schema
+from quietblade.cli.written import Written, show_written
 from quietblade.errors import CaseError
 
 
@@ -32,15 +33,24 @@ def new(
         ),
     ] = False,
     force: Annotated[bool, typer.Option("--force", help="Replace a file that is there.")] = False,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print the files as JSON; nothing is asked.")
+    ] = False,
 ) -> None:
     """Write a case file with comments, to start from."""
     from quietblade.case.presets import PRESETS, preset_text  # noqa: PLC0415  # as in check
     from quietblade.case.schema import DIRECTIVE  # noqa: PLC0415
 
+    if ask and as_json:
+        raise typer.BadParameter("--ask needs somebody to answer, --json a program: not together")
     if schema and name is None and not ask:
-        console.print(f"{write_schema(Path())}: schema of case files", markup=False)
+        file = write_schema(Path())
+        if as_json:
+            show_written([Written("schema", file)])
+        else:
+            console.print(f"{file}: schema of case files", markup=False)
         return
-    if ask or (name is None and sys.stdin.isatty()):
+    if ask or (name is None and not as_json and sys.stdin.isatty()):
         from quietblade.cli.questions import ask_case  # noqa: PLC0415
 
         path, text = ask_case(name, preset, force=force)
@@ -52,7 +62,11 @@ def new(
         text, path = preset_text(preset), case_path(name, force=force)
         about = PRESETS[preset]
     write_file(path, (DIRECTIVE if schema else "") + text)
+    made = [Written("case", path)]
     if schema:
-        write_schema(path.parent)
-    console.print(f"{path}: {about}", markup=False)
-    console.print(f"next: quietblade check {path}", markup=False)
+        made.append(Written("schema", write_schema(path.parent)))
+    if as_json:
+        show_written(made)
+    else:
+        console.print(f"{path}: {about}", markup=False)
+        console.print(f"next: quietblade check {path}", markup=False)

@@ -7,8 +7,9 @@ from typing import Annotated
 
 import typer
 
-from quietblade.cli.common import ExitCode, console
+from quietblade.cli.common import ExitCode, console, error_console
 from quietblade.cli.progress import ProgressDisplay
+from quietblade.cli.written import Written, show_written
 
 
 class Format(StrEnum):
@@ -17,6 +18,11 @@ class Format(StrEnum):
     PNG = "png"
     PDF = "pdf"
     SVG = "svg"
+    GIF = "gif"
+    MP4 = "mp4"
+
+
+_MOVING = (Format.GIF, Format.MP4)
 
 
 def plot(
@@ -35,17 +41,19 @@ def plot(
         typer.Option(
             "--format",
             "-f",
-            help="Kind of files, may be repeated; default png.",
+            help="Kind of files, may be repeated: png (default), pdf, svg; of moving pictures "
+            "gif (default), mp4.",
             show_default=False,
         ),
     ] = None,
     animate: Annotated[
         bool,
-        typer.Option(
-            "--animate", help="Draw moving pictures (GIF) of deformation and modes instead."
-        ),
+        typer.Option("--animate", help="Draw moving pictures of deformation and modes instead."),
     ] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Show errors only.")] = False,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print the files as JSON; progress goes to stderr.")
+    ] = False,
 ) -> ExitCode:
     """Draw the figures of runs again; nothing is computed."""
     from quietblade.results.store import RunFolder  # noqa: PLC0415  # help must stay fast
@@ -54,24 +62,32 @@ def plot(
 
     if joint and len(directories) < 2:
         raise typer.BadParameter("--joint needs the folders of at least two runs")
-    if animate and (joint or formats):
+    if animate and joint:
+        raise typer.BadParameter("--animate draws single runs: no --joint")
+    kinds = formats or [Format.GIF if animate else Format.PNG]
+    wrong = [kind.value for kind in kinds if (kind in _MOVING) != animate]
+    if wrong:
+        known = [kind.value for kind in Format if (kind in _MOVING) == animate]
         raise typer.BadParameter(
-            "--animate draws single runs as GIF files: no --joint, no --format"
+            f"{', '.join(wrong)}: {'moving' if animate else 'still'} pictures are "
+            f"{', '.join(known)}{'' if animate else '; --animate draws moving ones'}"
         )
     folders = [RunFolder(directory) for directory in directories]
     drawn: list[Path] = []
-    with ProgressDisplay(console, quiet=quiet) as progress:
+    with ProgressDisplay(error_console if as_json else console, quiet=quiet) as progress:
         if animate:
             for folder in folders:
-                drawn += draw_animations(folder, folder.load(), progress)
+                drawn += draw_animations(folder, folder.load(), progress, kinds)
         else:
-            kinds = formats or [Format.PNG]
             for folder in () if joint else folders:
                 drawn += draw_figures(folder, progress, kinds)
             if len(folders) > 1:
                 together = out or directories[0].parent / "figures"
                 drawn += draw_joint_figures(folders, together, progress, kinds)
-    if not quiet:
+    if as_json:
+        kind = "animation" if animate else "figure"
+        show_written(Written(kind, file) for file in drawn)
+    elif not quiet:
         for place in dict.fromkeys(file.parent for file in drawn):
             console.print(f"pictures: {place}", soft_wrap=True)
     return ExitCode.DONE

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """``quietblade report``: one HTML file to hand on, or a PDF."""
 
-from ast import literal_eval
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from quietblade.cli.common import ExitCode, console
+from quietblade.cli.common import ExitCode, console, error_console
 from quietblade.cli.progress import ProgressDisplay
+from quietblade.cli.written import Written, show_written
 
 if TYPE_CHECKING:
     from quietblade.results.model import RunRecord
@@ -28,6 +28,9 @@ def report(
         bool, typer.Option("--pdf", help="Write a PDF instead; needs the extra quietblade[pdf].")
     ] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Show errors only.")] = False,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print the file as JSON; progress goes to stderr.")
+    ] = False,
 ) -> ExitCode:
     """Write a report of a run as one self-contained HTML file, or as a PDF."""
     from quietblade.results.files import replacing, write_text  # noqa: PLC0415  # help stays fast
@@ -41,7 +44,7 @@ def report(
     file = out or directory / ("report.pdf" if pdf else "report.html")
     result = folder.load()
     words, cited = case_words(folder.case, result.run)
-    with ProgressDisplay(console, quiet=quiet) as progress:
+    with ProgressDisplay(error_console if as_json else console, quiet=quiet) as progress:
         page = render_report(
             folder,
             result,
@@ -56,7 +59,9 @@ def report(
                 temporary.write_bytes(pdf_of(page))
         else:
             write_text(file, page)
-    if not quiet:
+    if as_json:
+        show_written([Written("report", file)])
+    elif not quiet:
         console.print(f"report: {file} ({file.stat().st_size / 1e6:.1f} MB)", soft_wrap=True)
     return ExitCode.DONE
 
@@ -64,6 +69,7 @@ def report(
 def case_words(file: Path, run: "RunRecord") -> "tuple[tuple[Table, ...], tuple[Table, ...]]":
     """Say a run's case in words, as ``check`` does, or why that cannot be; and what to cite."""
     from quietblade.case import Case, InvalidCaseError  # noqa: PLC0415
+    from quietblade.case.changes import read_changes  # noqa: PLC0415
     from quietblade.cli.describe import case_tables  # noqa: PLC0415
     from quietblade.results.table import Table  # noqa: PLC0415
     from quietblade.study.citations import citation_table  # noqa: PLC0415
@@ -71,7 +77,7 @@ def case_words(file: Path, run: "RunRecord") -> "tuple[tuple[Table, ...], tuple[
     from quietblade.study.run import run_key  # noqa: PLC0415
 
     try:
-        case = Case.load(file).varied(_changes(run.case_text))
+        case = Case.load(file).varied(read_changes(run.case_text))
         if run_key(case, run.code_version) == run.content_key:
             told = case_tables(case, preflight(case))
             words = tuple(Table(title, (), tuple(rows)) for title, rows in told)
@@ -80,13 +86,3 @@ def case_words(file: Path, run: "RunRecord") -> "tuple[tuple[Table, ...], tuple[
     except InvalidCaseError as error:
         why = str(error)  # for instance, a file beside the case is gone
     return (Table("In words", (), ((f"{file.name} cannot be told in words", why),)),), ()
-
-
-def _changes(text: str) -> dict[str, Any]:
-    """Read back what a study or a script has changed: comments that `Case.varied` leaves."""
-    lines = [line.removeprefix(_MARK) for line in text.splitlines() if line.startswith(_MARK)]
-    pairs = (line.partition(" = ") for line in lines)
-    return {key: literal_eval(value) for key, _, value in pairs}
-
-
-_MARK = "# changed in memory: "

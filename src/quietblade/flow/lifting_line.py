@@ -37,6 +37,8 @@ LARGEST_WAKE_TURN = 0.5
 """Angle [rad] by which the wake turns about the axis while it travels one span."""
 
 _PAD = 3
+_RADIAL = 0.7
+"""Least cosine between a radius of the root and its span."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -312,12 +314,15 @@ def _directions(flow: FloatArray) -> FloatArray:
 
 
 def _wall_normal(sections: DeformedSections) -> FloatArray:
-    """Return the unit vector along the root's radius, or along the span of a root on the axis."""
+    """Return the unit vector along the root's radius, or along the span of a root on the axis.
+
+    Such a root has no radius; the height of its camber or its sweep must not be taken for one.
+    """
     across = np.array([0.0, 1.0, 1.0])
-    radial = sections.reference[0] * across
-    if not np.any(radial):
-        radial = sections.tangent[0] * across
-    result: FloatArray = radial / np.linalg.norm(radial)
+    radial, span = sections.reference[0] * across, sections.tangent[0] * across
+    length = float(np.linalg.norm(radial))
+    beside = abs(float(radial @ span)) <= _RADIAL * length * float(np.linalg.norm(span))
+    result: FloatArray = span / np.linalg.norm(span) if beside else radial / length
     return result
 
 

@@ -11,10 +11,11 @@ from dataclasses import dataclass, replace
 import gmsh
 import numpy as np
 
-from quietblade.errors import MeshError
+from quietblade.errors import InvertedCellError, MeshError
 from quietblade.geometry import Blade
 from quietblade.mesh.cad import Patch, Solids, build_solids
 from quietblade.mesh.cover import clear_size
+from quietblade.mesh.growth import GROWTH
 from quietblade.mesh.model import CellBlock, Mesh, patch_name
 from quietblade.mesh.quality import poor_cell_notices, region_quality
 from quietblade.typing import FloatArray, IntArray
@@ -27,14 +28,10 @@ CELL_KINDS = {
 }
 TRIANGLE6 = 9
 
-_GROWTH = 0.6
-"""Growth of the water's cells with the distance from the blade: 0.4 changes the frequencies of the
-first eight wet modes by less than 0.2 %."""
-
-
 _ATTEMPTS = (1.0, 0.98, 0.96, 0.94)
-"""Factors of the cell size that are tried: where the film's cover is thin, a flat cell that is
-inverted is bad luck, which another size does not have."""
+"""Factors of the cell size that are tried: where the film's cover is thin, a cell that is flat or
+inverted is bad luck, which another size does not have. What gmsh refuses to mesh it refuses in any
+of these sizes."""
 
 
 @dataclass(frozen=True)
@@ -77,11 +74,13 @@ def build_mesh(blade: Blade, spec: MeshSpec) -> Mesh:
     Raises
     ------
     MeshError
-        The volumes cannot be made or meshed, or a cell is inverted (with the place).
+        The volumes cannot be made or meshed.
+    InvertedCellError
+        A cell is inverted (with the place), also after the size was changed a little.
     """
     centre = np.array(spec.centre)
     poor: Mesh | None = None
-    failures: list[MeshError] = []
+    failures: list[InvertedCellError] = []
     with gmsh_session():
         try:
             solids = build_solids(blade, centre, spec.radius, spec.patches)
@@ -92,7 +91,7 @@ def build_mesh(blade: Blade, spec: MeshSpec) -> Mesh:
             gmsh.model.mesh.clear()
             try:
                 mesh = _mesh(blade, solids, replace(spec, size=factor * spec.size), centre)
-            except MeshError as error:
+            except InvertedCellError as error:
                 failures.append(error)
                 continue
             if min(quality.worst for quality in mesh.quality.values()) > 0.0:
@@ -228,7 +227,7 @@ def set_growth(surfaces: list[int], size: float, largest: float) -> None:
         "SizeMin": size,
         "SizeMax": largest,
         "DistMin": 0.5 * size,
-        "DistMax": 0.5 * size + (largest - size) / _GROWTH,
+        "DistMax": 0.5 * size + (largest - size) / GROWTH,
     }
     for name, value in limits.items():
         field.setNumber(growth, name, value)

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 import gmsh
 import numpy as np
 
-from quietblade.errors import MeshError, Notice
+from quietblade.errors import InvertedCellError, Notice
 from quietblade.mesh.model import Quality
 from quietblade.typing import FloatArray, IntArray
 
@@ -31,7 +31,7 @@ def region_quality(name: str, volume: int, position: FloatArray) -> Quality:
 
     Raises
     ------
-    MeshError
+    InvertedCellError
         A Jacobian determinant is not positive at a quadrature point.
     """
     shape, ratio = [], []
@@ -138,7 +138,7 @@ def _refuse_inverted(
     worst = int(determinants.min(axis=1).argmin())
     if determinants[worst].min() <= 0.0:
         x, y, z = position[cells[worst]].mean(axis=0)
-        raise MeshError(
+        raise InvertedCellError(
             f"a cell of the {name} is inverted at x = {x:.4f} m, y = {y:.4f} m, z = {z:.4f} m. "
             "Use a smaller mesh size, a thinner film or more cover above it."
         )

@@ -12,6 +12,7 @@ import xarray as xr
 
 from quietblade.results.files import ResultError
 from quietblade.results.model import ConfigurationResult, Result
+from quietblade.results.netcdf import read_tree
 from quietblade.results.quantities import CONFIGURATIONS, LABELS, QUANTITIES, Quantity
 from quietblade.results.record import Record
 from quietblade.typing import AnyArray
@@ -88,9 +89,8 @@ def read(path: Path) -> xr.DataTree:
         The file is not netCDF.
     """
     try:
-        with xr.open_datatree(path, engine="h5netcdf") as tree:
-            return tree.load()
-    except (OSError, ValueError) as error:
+        return read_tree(path)
+    except (OSError, ValueError, LookupError, RuntimeError) as error:
         raise ResultError(f"{path}: not a readable netCDF file ({error})") from error
 
 

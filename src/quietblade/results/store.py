@@ -2,6 +2,7 @@
 """The folder of a run."""
 
 from dataclasses import dataclass
+from os import PathLike
 from pathlib import Path
 
 from quietblade.results import dataset
@@ -96,3 +97,14 @@ class RunFolder:
             return dataset.from_tree(dataset.read(self.result))
         except ResultError as error:
             raise ResultError(f"{self.result}: {error}") from error
+
+
+def load(folder: str | PathLike[str]) -> Result:
+    """Read the result of a run from its folder.
+
+    Raises
+    ------
+    ResultError
+        There is none, or it cannot be read.
+    """
+    return RunFolder(Path(folder)).load()

@@ -98,6 +98,7 @@ def _performance(summary: Summary) -> Table:
             ("Efficiency", "efficiency", ".4f", "T V_A / (Q omega)"),
             ("  without friction", "inviscid_efficiency", ".4f", ""),
         )
+        if any(getattr(state, key) is not None for state in states)  # nothing turns: no efficiency
     ]
     note = (
         f"{figures.blades} blade{'s' if figures.blades > 1 else ''}, inflow {figures.inflow}, "

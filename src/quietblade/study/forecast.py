@@ -13,13 +13,11 @@ from scipy.spatial import cKDTree
 from scipy.stats import qmc
 
 from quietblade.geometry import Blade
+from quietblade.mesh.growth import GROWTH
 from quietblade.typing import FloatArray
 
 UNCERTAINTY = 0.15
 """A mesh has so many nodes and unknowns more or less, as a share of the forecast."""
-
-GROWTH = 0.6
-"""Growth of the water's cells with the distance: that of `quietblade.mesh.build`."""
 
 _GRADED = 9.95
 _UNIFORM = 5.0

@@ -186,14 +186,3 @@ def run(case: Case, folder: str | PathLike[str], progress: Progress = silent) ->
         The case cannot be, or a stage failed.
     """
     return run_case(case, RunFolder(Path(folder)), progress)
-
-
-def load(folder: str | PathLike[str]) -> Result:
-    """Read the result of a run from its folder.
-
-    Raises
-    ------
-    ResultError
-        There is none, or it cannot be read.
-    """
-    return RunFolder(Path(folder)).load()

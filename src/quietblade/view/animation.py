@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Moving pictures of the deformation and of the wet modes, as GIF files."""
+"""Moving pictures of the deformation and of the wet modes, as GIF or MP4 files."""
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -13,11 +13,13 @@ from quietblade.results.files import replacing
 from quietblade.results.model import Result
 from quietblade.results.store import RunFolder
 from quietblade.typing import AnyArray, FloatArray, Progress, silent
+from quietblade.view.movie import require_mp4, write_mp4
 from quietblade.view.render import FROM_UPSTREAM, Stage, cropped
 from quietblade.view.style import SEQUENTIAL
 from quietblade.view.surfaces import Motion, MovingSurface, moving_surfaces
 
 _FRAMES, _PERIOD = 16, 1.6  # of one swing; seconds
+_SWINGS = 4  # of a film, which need not begin again by itself as a GIF does
 _SIZE = (960, 640)  # pixels, before the margins are cut
 _AMPLITUDE = 0.08  # largest displacement of a mode in the picture, over the span
 _MARGIN, _FONT = 8, 15  # pixels
@@ -25,7 +27,7 @@ _COLORS, _SHADES, _GREYS = 48, (1.0, 0.85, 0.7, 0.55), 32  # a GIF has at most 2
 
 
 def draw_animations(
-    folder: RunFolder, result: Result, progress: Progress = silent
+    folder: RunFolder, result: Result, progress: Progress = silent, kinds: Sequence[str] = ("gif",)
 ) -> tuple[Path, ...]:
     """Draw the steady deformation and every wet mode into the run's folder of figures.
 
@@ -34,6 +36,8 @@ def draw_animations(
     folder, result
         The run; nothing is computed.
     progress : callable
+    kinds : sequence of str
+        Endings of the files: ``gif``, or ``mp4`` of several swings.
 
     Returns
     -------
@@ -44,17 +48,26 @@ def draw_animations(
     ------
     ResultError
         A file of fields is missing.
+    MovieError
+        There is no program for MP4 files.
     """
+    if "mp4" in kinds:
+        require_mp4()  # before anything is drawn
     surfaces = moving_surfaces(folder, result)
     moving = [(surface, motion) for surface in surfaces for motion in surface.motions]
     made = []
     for done, (surface, motion) in enumerate(moving):
         name = f"mode-{surface.configuration}-{motion.name}" if motion.name else "steady"
         progress("animations", done / len(moving), name)
-        file = folder.figures / f"{name}.gif"
-        with replacing(file) as temporary:
-            _write(temporary, animation(surface, motion), _title(surface, motion))
-        made.append(file)
+        frames = _titled(animation(surface, motion), _title(surface, motion))
+        for kind in kinds:
+            file = folder.figures / f"{name}.{kind}"
+            with replacing(file) as temporary:
+                if kind == "mp4":
+                    write_mp4(temporary, _SWINGS * list(map(np.asarray, frames)), _FRAMES / _PERIOD)
+                else:
+                    _write_gif(temporary, frames)
+            made.append(file)
     progress("animations", 1.0, f"{len(made)} files in {folder.figures}")
     return tuple(made)
 
@@ -112,7 +125,7 @@ def _title(surface: MovingSurface, motion: Motion) -> str:
     )
 
 
-def _write(file: Path, pictures: Sequence[AnyArray], title: str) -> None:
+def _titled(pictures: Sequence[AnyArray], title: str) -> list[Image.Image]:
     font = ImageFont.load_default(_FONT)
     frames = []
     for picture in pictures:
@@ -122,6 +135,10 @@ def _write(file: Path, pictures: Sequence[AnyArray], title: str) -> None:
         frame.paste(Image.fromarray(picture), (_MARGIN, head))
         ImageDraw.Draw(frame).text((_MARGIN, _MARGIN), title, fill="black", font=font)
         frames.append(frame)
+    return frames
+
+
+def _write_gif(file: Path, frames: Sequence[Image.Image]) -> None:
     palette = _palette()
     first, *others = (frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames)
     first.save(

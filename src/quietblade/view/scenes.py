@@ -221,7 +221,8 @@ def draw_mode_shapes(
     for panel, (name, frequency, loss) in zip(panels, numbers, strict=False):
         _show(panel, pictures[name], f"{name}  {frequency:.1f} Hz, $\\eta$ = {loss:.1e}")
     bar = _color_bar(figure, list(panels), (-1.0, 1.0), DIVERGING, shrink=0.8, aspect=30)
-    bar.set_label("Displacement normal to the surface\nover the largest displacement [–]")
+    # as short as one row of pictures is low
+    bar.set_label("Displacement normal\nto the surface over\nthe largest [–]")
     title = f"Wet modes in {configuration}: {result.title}"
     figure.suptitle(title, x=0.01, ha="left", fontsize=9.0)
     return figure
