@@ -114,6 +114,7 @@ class ExcitationWords(Words):
     example: ClassVar[units.Kind] = units.PRESSURE
     density_example: ClassVar[units.Kind] = units.PRESSURE_DENSITY
 
+    kind: str = Field(title="Kind", description="What sets it in motion")
     name: Text = Field("", title="Name", description="Name in results; the kind if not given")
     phase: Angle = Field(0.0, title="Phase", description="Phase against the other loads")
     table: Text | None = Field(None, title="Table", description=_TABLE)

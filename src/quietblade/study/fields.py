@@ -113,7 +113,7 @@ def _nodes_in(mesh: Mesh, *regions: str) -> np.ndarray[tuple[int], np.dtype[np.b
 
 
 def _solid(mesh: Mesh) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
-    return _nodes_in(mesh, "blade", "film")
+    return _nodes_in(mesh, "blade", "film", "body")
 
 
 def _on_solid(mesh: Mesh, shape: ComplexArray) -> ComplexArray:

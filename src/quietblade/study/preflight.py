@@ -91,7 +91,7 @@ def preflight(case: Case) -> Preflight:
     findings = [
         *_sphere_findings(case, clearance, outermost),
         *_mesh_findings(case, blade, faces),
-        *far_field_findings(case, blade),
+        *far_field_findings(case, _surface(blade)),
         *_campbell_findings(case),
     ]
     if findings:
@@ -182,6 +182,10 @@ def _sphere_findings(case: Case, clearance: float, where: float) -> Iterator[Fin
             f"A radius above {least:.4g} m encloses the blade at rest; leave room for its "
             "deformation",
         )
+
+
+def _surface(blade: Blade) -> FloatArray:
+    return blade.section(np.linspace(0.0, 1.0, 201), 161).reshape(-1, 3)
 
 
 def _surface_elements(blade: Blade, size: float) -> int:

@@ -23,6 +23,7 @@ from quietblade.results.lock import locked
 from quietblade.results.model import Result
 from quietblade.results.store import RunFolder
 from quietblade.study import translate
+from quietblade.study.blade_vibration import solve_vibration
 from quietblade.study.campbell import solve_campbell
 from quietblade.study.clock import Stages
 from quietblade.study.fields import write_static_fields, write_vibration_fields
@@ -34,7 +35,7 @@ from quietblade.study.preflight import Preflight, preflight
 from quietblade.study.sound import solve_sound
 from quietblade.study.stages import origins
 from quietblade.study.statics import Statics, build_structure, solve_statics
-from quietblade.study.vibration import frequencies, solve_vibration
+from quietblade.study.vibration import frequencies
 from quietblade.typing import Progress, silent
 
 

@@ -18,13 +18,14 @@ from quietblade.mesh.motion import solve_mesh_motion
 from quietblade.results.model import Result, StaticResult
 from quietblade.results.store import RunFolder
 from quietblade.study import outcome, translate, vibration
+from quietblade.study.blade_vibration import solve_vibration
 from quietblade.study.gather import gather
 from quietblade.study.mode_tables import mode_tables
 from quietblade.study.preflight import preflight
 from quietblade.study.run import run_case, run_key
 from quietblade.study.sound import Sound, solve_sound
 from quietblade.study.statics import Statics, solve_statics
-from quietblade.study.vibration import Vibration, solve_vibration
+from quietblade.study.vibration import Vibration
 from quietblade.typing import FloatArray, Progress, silent
 
 
