@@ -74,6 +74,8 @@ def comparison_table(differences: tuple[Difference, ...], names: tuple[str, str]
 
 def _static(first: Summary, second: Summary) -> Iterator[Difference]:
     a, b = first.static, second.static
+    if a is None or b is None:
+        return
     for axis, u, v in zip("xyz", a.tip_displacement_m, b.tip_displacement_m, strict=True):
         yield Difference(f"tip displacement {axis}", "m", u, v)
     yield Difference("blade angle at the tip", "deg", a.tip_blade_angle_deg, b.tip_blade_angle_deg)

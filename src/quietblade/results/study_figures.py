@@ -69,6 +69,8 @@ def _number(value: float | None) -> float:
 
 def _static(summary: Summary) -> Iterator[Figure]:
     static = summary.static
+    if static is None:
+        return
     for axis, value in zip("xyz", static.tip_displacement_m, strict=True):
         name = f"tip_displacement_{axis}"
         yield Figure(name, _number(value), "m", f"displacement of the tip along {axis}")

@@ -186,7 +186,7 @@ def run_study(
 def _row(run: Planned, result: Result | None, message: str) -> StudyRow:
     if result is None:
         return StudyRow(run.case, run.variant, run.changes, "failed", message)
-    state = "finished" if result.static.converged else "not converged"
+    state = "finished" if result.converged else "not converged"
     return StudyRow(run.case, run.variant, run.changes, state, figures=headline_figures(result))
 
 
