@@ -98,7 +98,7 @@ def _mode_table(
     return model.ModeTable(
         name=vibration.naming.name,
         frequency=modes.frequency,
-        loss_factor=np.nansum(losses.share, axis=1),
+        loss_factor=np.where(modes.rigid, np.nan, np.nansum(losses.share, axis=1)),
         film_loss=modes.loss_factor,
         radiation_loss=losses.share[:, losses.name.index(RADIATION)],
         purity=vibration.naming.purity,

@@ -14,6 +14,7 @@ PRESETS: Mapping[str, str] = MappingProxyType(
         "paper-composite": "the woven carbon blade of the two-step paper",
         "hydrofoil": "a fixed hydrofoil of a water-tunnel experiment",
         "twisted": "a twisted, swept and cambered blade of bronze with a film",
+        "sphere": "a spherical shell of steel in water, with an exact solution",
     }
 )
 """Name and one line about each."""
