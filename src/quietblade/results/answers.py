@@ -2,6 +2,7 @@
 """The headline answers in words, in the order in which people ask."""
 
 from collections.abc import Iterable, Iterator, Mapping
+from itertools import groupby
 
 import numpy as np
 
@@ -72,7 +73,15 @@ def _resonances(summary: Summary) -> Iterator[str]:
 
 
 def _frequencies(modes: Iterable[ModeSummary]) -> str:
-    return ", ".join(f"{mode.name} {number(mode.frequency_hz, '.1f')}" for mode in modes)
+    """Frequencies by name; of modes that differ in their second number only, the mean."""
+    elastic = (mode for mode in modes if mode.kind != "rigid")
+    told = []
+    for stem, group in groupby(elastic, key=lambda mode: mode.name.partition(".")[0]):
+        known = [mode.frequency_hz for mode in group]
+        mean = np.mean([np.nan if f is None else f for f in known])
+        count = f" ({len(known)} modes)" if len(known) > 1 else ""
+        told.append(f"{stem} {number(float(mean), '.1f')}{count}")
+    return ", ".join(told)
 
 
 def _loud(summary: Summary) -> Iterator[str]:

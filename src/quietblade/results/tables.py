@@ -171,8 +171,8 @@ def _mode_row(rest: ModeSummary | None, loaded: ModeSummary | None) -> tuple[str
     before, after = (m.frequency_hz if m else None for m in (rest, loaded))
     return (
         " / ".join(dict.fromkeys(names)),
-        number(before, ".2f"),
-        number(after, ".2f"),
+        number(before, "z.2f"),
+        number(after, "z.2f"),
         _change(after, before),
         *(number(m.loss_factor if m else None, ".2e") for m in (rest, loaded)),
         number(rest.partner_mac if rest and loaded else None, ".3f"),
@@ -194,7 +194,7 @@ def _kinds(summary: Summary) -> Table:
             mode.name,
             mode.kind,
             number(mode.purity, ".2f"),
-            number(mode.frequency_hz, ".2f"),
+            number(mode.frequency_hz, "z.2f"),
             *([number(mode.dry_frequency_hz, ".2f")] if dry else []),
             number(mode.loss_factor, ".2e"),
             *(number(mode.loss_by_part.get(part), ".1e") for part in parts),

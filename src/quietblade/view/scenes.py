@@ -38,7 +38,7 @@ BLADE, EXCITED, LINES = "#C9D3DC", "#D55E00", "#30363C"
 _FILM = "#E69F00"
 _CELL_COLORS = {"tetra10": BLADE, "pyramid13": "#56B4E9", "hexahedron20": _FILM}
 _MODE_AMPLITUDE = 0.12  # largest displacement in a picture of a mode, over the span
-_COLUMNS = 3  # of the small pictures
+_COLUMNS, _ROUND_COLUMNS = 3, 5  # of the small pictures, and of those as wide as high
 _STRETCH, _SLAB = 3.0, 0.02  # of the cut: thickness, and half its length along the span [m]
 _FROM_CUT = View((-0.3, 0.5, 1.0), (0.0, 1.0, 0.0))
 
@@ -214,15 +214,18 @@ def draw_mode_shapes(
         What `mode_pictures` makes of that configuration.
     """
     modes = result.configurations[configuration].modes
-    rows = max(1, -(-len(modes.name) // _COLUMNS))
     shape = next((p.shape for p in pictures.values()), (1, 2))
-    figure = new_figure(0.5 + rows * (0.2 + 0.9 * WIDTH / _COLUMNS * shape[0] / shape[1]))
-    panels = figure.subplots(rows, _COLUMNS, squeeze=False).ravel()
+    slim = shape[1] > 1.5 * shape[0]
+    columns, head, gap = (_COLUMNS, 0.2, ", ") if slim else (_ROUND_COLUMNS, 0.4, "\n")
+    rows = max(1, -(-len(modes.name) // columns))
+    figure = new_figure(0.5 + rows * (head + 0.9 * WIDTH / columns * shape[0] / shape[1]))
+    panels = figure.subplots(rows, columns, squeeze=False).ravel()
     for panel in panels:
         panel.set_axis_off()
     numbers = zip(modes.name, modes.frequency, modes.loss_factor, strict=True)
     for panel, (name, frequency, loss) in zip(panels, numbers, strict=False):
-        show(panel, pictures[name], f"{name}  {frequency:.1f} Hz, $\\eta$ = {loss:.1e}")
+        told = f"$\\eta$ = {loss:.1e}" if np.isfinite(loss) else "rigid motion"
+        show(panel, pictures[name], f"{name}  {frequency:z.1f} Hz{gap}{told}")
     bar = _color_bar(figure, list(panels), (-1.0, 1.0), DIVERGING, shrink=0.8, aspect=30)
     bar.set_label("Displacement normal to the surface\nover the largest displacement [–]")
     title = f"Wet modes in {configuration}: {result.title}"
