@@ -182,6 +182,11 @@ class BodyCase(AnyCase):
 
     @classmethod
     def _strangers(cls, data: Mapping[str, Any]) -> Iterator[Finding]:
+        if "body" not in data:
+            if "blade" in data:
+                fault = "describes a blade, which this cannot be done with"
+                yield Finding(("blade",), fault, "Give a case file with [body]")
+            return
         for table in BLADE_TABLES:
             if table in data and table != "blade":
                 yield Finding((table,), "is of a blade, and this case has [body]", "Remove it")

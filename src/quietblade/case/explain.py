@@ -114,7 +114,9 @@ def _missing(path: Path, data: Mapping[str, Any], root: Model) -> Finding:
     inner = _whole_table(str(key), info, root)
     if inner is not None:
         wanted = [name for name, f in inner.model_fields.items() if f.is_required()]
-        return Finding(path, "this table is missing", f"Add [{key}] with {', '.join(wanted)}")
+        instead = ", or [body] for a sphere in water" if path == ("blade",) else ""
+        remedy = f"Add [{key}] with {', '.join(wanted)}{instead}"
+        return Finding(path, "this table is missing", remedy)
     return Finding(path, "is missing", f"{info.description}. Add {_example(str(key), info)}")
 
 

@@ -150,10 +150,9 @@ def _meshed(solids: _Solids, spec: ShellSpec) -> Mesh:
     try:
         gmsh.model.mesh.generate(3)
         gmsh.model.mesh.setOrder(2)
-    except Exception as error:
+        made = collect_cells({BODY: solids.wall, "water": solids.water})
+    except Exception as error:  # also of a mesh without nodes, of which gmsh says nothing
         raise _explained(error, spec) from error
-    volumes = {BODY: solids.wall, "water": solids.water}
-    made = collect_cells(volumes)
     worst = min(quality.worst for quality in made.quality.values())
     if worst <= 0.0:
         raise MeshError(

@@ -107,8 +107,9 @@ def draw_balloons(result: Result) -> Figure:
                 len(members), _BALLOONS, _BALLOONS * line + column + 1, projection="3d"
             )
             _draw_balloon(ax, configuration, int(row), norm)
+            whose = (name, names[int(row)]) if int(row) in names else (name,)
             ax.set_title(
-                f"{f'{name} {names.get(int(row), str())}'.rstrip()}, {pattern.frequency[row]:.1f} Hz\n"
+                f"{' '.join(whose)}, {pattern.frequency[row]:.1f} Hz\n"
                 f"$L_S$ {pattern.source_level[row]:.1f} dB, DI {pattern.index[row]:.1f} dB",
                 fontsize=7.5,
                 loc="center",

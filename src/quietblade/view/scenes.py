@@ -216,7 +216,8 @@ def draw_mode_shapes(
     modes = result.configurations[configuration].modes
     shape = next((p.shape for p in pictures.values()), (1, 2))
     slim = shape[1] > 1.5 * shape[0]
-    columns, head, gap = (_COLUMNS, 0.2, ", ") if slim else (_ROUND_COLUMNS, 0.4, "\n")
+    columns, head = (_COLUMNS, 0.2) if slim else (_ROUND_COLUMNS, 0.5)
+    first, then = ("  ", ", ") if slim else ("\n", "\n")
     rows = max(1, -(-len(modes.name) // columns))
     figure = new_figure(0.5 + rows * (head + 0.9 * WIDTH / columns * shape[0] / shape[1]))
     panels = figure.subplots(rows, columns, squeeze=False).ravel()
@@ -225,7 +226,7 @@ def draw_mode_shapes(
     numbers = zip(modes.name, modes.frequency, modes.loss_factor, strict=True)
     for panel, (name, frequency, loss) in zip(panels, numbers, strict=False):
         told = f"$\\eta$ = {loss:.1e}" if np.isfinite(loss) else "rigid motion"
-        show(panel, pictures[name], f"{name}  {frequency:z.1f} Hz{gap}{told}")
+        show(panel, pictures[name], f"{name}{first}{frequency:z.1f} Hz{then}{told}")
     bar = _color_bar(figure, list(panels), (-1.0, 1.0), DIVERGING, shrink=0.8, aspect=30)
     bar.set_label("Displacement normal to the surface\nover the largest displacement [–]")
     title = f"Wet modes in {configuration}: {result.title}"
