@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from quietblade.case import Case
+from quietblade.case import BodyCase, Case
 from quietblade.case.library import NAMES, SOURCE_OF
 from quietblade.study.preflight import preflight
 from tools import case_reference, draw_house
@@ -150,8 +150,9 @@ def test_case_of_the_page_of_modes_is_a_case() -> None:
 
 def test_every_key_of_a_case_is_in_its_reference() -> None:
     page = "\n".join(case_reference.keys())
-    models = Case.model_json_schema()["$defs"]
-    keys = {key for model in models.values() for key in model.get("properties", {})}
+    models = [*Case.model_json_schema()["$defs"].values()]
+    models += BodyCase.model_json_schema()["$defs"].values()
+    keys = {key for model in models for key in model.get("properties", {})}
     assert len(keys) > 80
     assert {k for k in keys if f"| `{k}` |" not in page and f".{k}]`" not in page} == set()
 

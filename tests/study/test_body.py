@@ -155,7 +155,6 @@ def test_stages_are_kept(case: BodyCase, folder: RunFolder) -> None:
     assert dict(zip(again.run.cost.stage, again.run.cost.kept.tolist(), strict=True)) == {
         "mesh": True, "modes C0": True, "sweep C0": False, "mode tables": False, "files": False,
     }  # fmt: skip
-    run_case(case, folder)
 
 
 def test_commands(case: BodyCase, folder: RunFolder, tmp_path: Path) -> None:

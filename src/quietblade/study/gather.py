@@ -6,7 +6,7 @@ from itertools import chain
 from types import MappingProxyType
 
 from quietblade.case import AnyCase, Case
-from quietblade.case.presets import PRESETS, preset_text
+from quietblade.case.presets import BLADES, preset_text
 from quietblade.errors import Notice
 from quietblade.mesh import Mesh
 from quietblade.results import mode_records as records
@@ -108,7 +108,7 @@ def paper_blade(case: Case) -> str:
 
     What the paper leaves open (film, excitation, mesh, sphere) may be anything.
     """
-    for name in PRESETS:
+    for name in BLADES:
         family, _, blade = name.partition("-")
         if family == "paper" and _stated(case) == _stated(Case.parse(preset_text(name))):
             return blade

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import ngsolve as ngs
 
-from quietblade.case import Case
+from quietblade.case import AnyCase, BodyCase, Case, parse_case
 from quietblade.case.presets import preset_text
 from quietblade.errors import CaseError
 from quietblade.geometry import Blade
@@ -29,15 +29,17 @@ from quietblade.study.vibration import Vibration
 from quietblade.typing import FloatArray, Progress, silent
 
 
-def preset(name: str) -> Case:
+def preset(name: str) -> Case | BodyCase:
     """Return a case to start from, by the names that ``quietblade new`` knows.
+
+    All are of blades but ``sphere``, a `BodyCase` for `run`.
 
     Raises
     ------
     CaseError
         There is no preset of this name.
     """
-    return Case.parse(preset_text(name), f"{name}.toml")
+    return parse_case(preset_text(name), f"{name}.toml")
 
 
 def make_blade(case: Case) -> Blade:
@@ -176,7 +178,7 @@ def collect(
     )
 
 
-def run(case: Case, folder: str | PathLike[str], progress: Progress = silent) -> Result:
+def run(case: AnyCase, folder: str | PathLike[str], progress: Progress = silent) -> Result:
     """Compute a case at once and keep everything in a folder, as ``quietblade run`` does.
 
     What an earlier run of the folder has computed, and nothing has changed, is used again.

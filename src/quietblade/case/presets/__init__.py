@@ -19,6 +19,9 @@ PRESETS: Mapping[str, str] = MappingProxyType(
 )
 """Name and one line about each."""
 
+BLADES = tuple(name for name in PRESETS if name != "sphere")
+"""Those of blades."""
+
 
 def preset_text(name: str) -> str:
     """Return the text of a case file.
