@@ -21,7 +21,15 @@ from quietblade.results.tables import summary_tables
 from quietblade.typing import Progress, silent
 from quietblade.view.figures import draw_figures
 from quietblade.view.interactive import POLICY, interactive_view
-from quietblade.view.report_order import BODY_VIEW, CASE, SECTIONS, TRUST, VIEW, Section
+from quietblade.view.report_order import (
+    BODY_CAPTIONS,
+    BODY_VIEW,
+    CASE,
+    SECTIONS,
+    TRUST,
+    VIEW,
+    Section,
+)
 
 
 def render_report(
@@ -63,10 +71,13 @@ def render_report(
     given = {table.title: table for table in summary_tables(summary)}
     given |= {table.title: table for table in evidence_tables(result)}
     given |= {table.title: table for table in others}
+    captions = BODY_CAPTIONS if result.static is None else {}
     parts = []
     for section in (*SECTIONS, _rest(given, figures)):
         own = words if section.title == CASE else ()
-        parts.append(_section(section, (*own, *_chosen(section, given)), figures, {place: view}))
+        parts.append(
+            _section(section, (*own, *_chosen(section, given)), figures, {place: view}, captions)
+        )
     parts.append(f"<h3>Case file</h3>\n<pre>{escape(result.run.case_text)}</pre>")
     body = "\n".join(part for part in parts if part)
     return page.substitute(
@@ -107,9 +118,10 @@ def _section(
     tables: Sequence[Table],
     figures: Mapping[str, Path],
     views: Mapping[str, str],
+    captions: Mapping[str, str],
 ) -> str:
     pictures = [
-        _figure(figures[name], caption, views.get(name, ""))
+        _figure(figures[name], captions.get(name, caption), views.get(name, ""))
         for name, caption in section.figures.items()
         if name in figures
     ]

@@ -29,6 +29,13 @@ VIEW = "displacement"
 BODY_VIEW = "mode-shapes-C0"
 """The same of a body that is no blade, which has no steady deformation."""
 
+BODY_CAPTIONS = {
+    "directivity-xy": "Directivity in the plane of x and y.",
+    "directivity-xz": "Directivity in the plane of x and z.",
+    "directivity-yz": "Directivity in the plane of y and z.",
+}
+"""Captions of a body that is no blade, where they are other ones."""
+
 CASE = "The case"
 """Section of the case in words, which do not come from the result."""
 
