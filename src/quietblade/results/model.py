@@ -686,6 +686,8 @@ class Result(Record):
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        if self.static is None and "C1" in self.configurations:
+            raise ValueError("C1 is the state under a steady load, and there is no such load")
         unknown = set(self.configurations) - set(CONFIGURATIONS)
         if unknown:
             raise ValueError(f"configurations {sorted(unknown)}; there are {CONFIGURATIONS}")

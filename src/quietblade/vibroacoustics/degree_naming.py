@@ -103,7 +103,7 @@ def degree_shares(surface: SurfaceQuadrature, shapes: FloatArray) -> FloatArray:
             for row, field in enumerate((along, around)):
                 parts = np.einsum("mqi,kqi->mk", weighted, field)
                 shares[row, degree] += _squares(parts) / (degree * (degree + 1))
-    return np.asarray((shares / total).reshape(-1, len(shapes)).T)
+    return np.asarray((shares / total).reshape(2 * (HIGHEST + 1), len(shapes)).T)
 
 
 def _squares(rows: FloatArray) -> FloatArray:
