@@ -10,6 +10,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import numpy as np
+from scipy.special import eval_legendre
 
 from quietblade.case import BodyCase
 from quietblade.case.materials import IsotropicWords
@@ -20,12 +21,14 @@ from quietblade.study.run import run_case
 from quietblade.vibroacoustics.power import level
 from verification.acoustics_closed_forms import ElasticSphere
 from verification.acoustics_modes import complex_mode, real_mode
-from verification.acoustics_steel_shell import cap_power
+from verification.acoustics_steel_shell import cap_coefficients, cap_power
 from verification.registry import check
 
 SOURCE = "three-dimensional elasticity and spherical waves (Junger and Feit 1986), infinite water"
 CAP = 20.0
 FREQUENCIES = (900.0, 1000.0, 1100.0, 1200.0, 1300.0, 1400.0)
+POINTS = {"behind": (0.0, 0.0, -3.0), "beside": (3.0, 0.0, 0.0)}
+"""Places at which the pressure is told [m]; the cap is in front, about +z."""
 RESONANCES = {2: (900.0, 1250.0), 3: (1150.0, 1450.0)}
 """Degree: range that holds its one resonance [Hz]."""
 DECAY = 150.0
@@ -39,6 +42,7 @@ def sphere_case() -> BodyCase:
         "acoustics.step": "25 Hz",
         "acoustics.points_per_mode": 0,
         "far_field.frequencies": [f"{f:g} Hz" for f in FREQUENCIES],
+        "far_field.points": [[f"{x:g} m" for x in point] for point in POINTS.values()],
     }
     return BodyCase.parse(preset_text("sphere")).varied(changes)
 
@@ -74,6 +78,25 @@ def power_level(frequency: float) -> float:
     return float(spectrum.power_level[path("sphere"), place])
 
 
+def pressure_level(point: str, frequency: float) -> float:
+    """Level of the sound pressure at a point [dB re 1 uPa]."""
+    far = computed().far_field
+    (place,) = np.flatnonzero(far.frequency == frequency)
+    return float(far.pressure_level[list(POINTS).index(point), place])
+
+
+def exact_pressure_level(sphere: ElasticSphere, point: str, frequency: float) -> float:
+    """Sum the series of the cap at a point [dB re 1 uPa]."""
+    omega, place = 2.0 * np.pi * frequency, np.array(POINTS[point])
+    r = float(np.linalg.norm(place))
+    total = 0j
+    for n, load in enumerate(cap_coefficients(np.radians(CAP), 20)):
+        wave = sphere.solve(n, omega, float(load))[1]
+        pressure = -1j * omega * sphere.water_density * wave.potential(r)
+        total += pressure * eval_legendre(n, place[2] / r)
+    return float(20.0 * np.log10(abs(total) / np.sqrt(2.0) / 1e-6))
+
+
 def mean_over_degree(degree: int, values: str) -> float:
     """Mean of a column of the table of modes over the modes of a degree."""
     modes = computed().modes
@@ -95,6 +118,16 @@ for _frequency in FREQUENCIES:
         tolerance=0.1,
         quick=False,
     )(partial(power_level, _frequency))
+
+for _point in POINTS:
+    check(
+        f"acoustics/sphere-case-{_point}",
+        quantity=f"sound pressure at 3 m {_point} it, 1300 Hz [dB re 1 uPa]",
+        reference=exact_pressure_level(_SPHERE, _point, 1300.0),
+        source=f"{SOURCE}, series to degree 20",
+        tolerance=0.1,
+        quick=False,
+    )(partial(pressure_level, _point, 1300.0))
 
 for _degree, (_low, _high) in RESONANCES.items():
     _wet = real_mode(_STILL, _degree, _low, 1.2 * _high)

@@ -42,14 +42,16 @@ def preset(name: str) -> Case | BodyCase:
     return parse_case(preset_text(name), f"{name}.toml")
 
 
-def make_blade(case: Case) -> Blade:
+def make_blade(case: AnyCase) -> Blade:
     """Return the undeformed blade, after everything that can be checked without a mesh.
 
     Raises
     ------
     CaseError
-        The case cannot be.
+        The case cannot be, or is of another body.
     """
+    if not isinstance(case, Case):
+        raise CaseError("this case has no blade; `run` computes it at once")
     return preflight(case).blade
 
 
