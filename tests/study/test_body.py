@@ -7,8 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from quietblade.case import BodyCase
+from quietblade.case import BodyCase, InvalidCaseError
 from quietblade.case.presets import preset_text
+from quietblade.case.study import Study
 from quietblade.cli.common import ExitCode
 from quietblade.results.answers import answers
 from quietblade.results.dataset import from_tree, to_tree
@@ -16,10 +17,12 @@ from quietblade.results.evidence import evidence_tables
 from quietblade.results.headline import summarise
 from quietblade.results.model import Result, path
 from quietblade.results.store import RunFolder
+from quietblade.results.study_figures import headline_figures
 from quietblade.results.tables import summary_tables
 from quietblade.study.examine import examine
 from quietblade.study.outlook import look_ahead
 from quietblade.study.run import finished, run_case
+from quietblade.study.studies import plan
 from quietblade.view.bodies import draw_body_mesh
 from quietblade.view.surfaces import moving_surfaces
 from tests.case.commands import command
@@ -177,6 +180,23 @@ def test_commands(case: BodyCase, folder: RunFolder, tmp_path: Path) -> None:
     code, _, err = command("export", str(file), "--step", str(tmp_path / "x.step"))
     assert code == ExitCode.CASE_WRONG
     assert "describes another body than a blade" in err
+
+
+def test_studies_take_bodies(tmp_path: Path, result: Result) -> None:
+    (tmp_path / "ball.toml").write_text(preset_text("sphere"))
+    file = tmp_path / "study.toml"
+    file.write_text(
+        '[cases]\nball = "ball.toml"\n[vary]\n"mesh.size" = ["90 mm", "80 mm", "9 mm/s"]\n'
+    )
+    with pytest.raises(InvalidCaseError, match=r"mesh\.size"):
+        plan(Study.load(file))
+    file.write_text(file.read_text().replace(', "9 mm/s"', ""))
+    runs = plan(Study.load(file))
+    assert [run.words.mesh.size for run in runs] == [0.09, 0.08]
+    assert all(isinstance(run.words, BodyCase) for run in runs)
+    figures = {figure.name for figure in headline_figures(result)}
+    assert {"nodes", "C0_n2.1_frequency", "C0_mean_level"} <= figures
+    assert not any("rigid" in name for name in figures)
 
 
 def test_forecast_is_near_the_mesh(case: BodyCase, result: Result) -> None:

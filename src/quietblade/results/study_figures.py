@@ -104,7 +104,8 @@ def _modes(summary: Summary) -> Iterator[Figure]:
     loaded = {mode.name: mode for mode in summary.modes.C1}
     for name, modes in (("C0", summary.modes.C0), ("C1", summary.modes.C1)):
         for mode in modes:
-            yield from _mode(name, mode)
+            if mode.kind != "rigid":  # their frequency is zero up to rounding
+                yield from _mode(name, mode)
     for mode in summary.modes.C0:
         partner = loaded.get(mode.partner)
         if partner is None:
