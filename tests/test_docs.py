@@ -8,8 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from quietblade.case import Case
+from quietblade.case import BodyCase, Case
 from quietblade.case.library import NAMES, SOURCE_OF
+from quietblade.study.body_preflight import body_preflight
 from quietblade.study.preflight import preflight
 from tools import case_reference, draw_house
 from verification.acoustics_closed_forms import bgt1, power_ratio
@@ -127,9 +128,21 @@ def test_readme_case_is_a_case() -> None:
     assert Case.parse(example).blade.hub_radius == pytest.approx(0.15)
 
 
+def of_body(example: str) -> bool:
+    return "[body]" in example or "at = [1, 0, 0]" in example
+
+
+def test_examples_of_the_case_page_of_a_body_are_cases() -> None:
+    whole, force = (text for text in toml_examples("docs/case-file.md") if of_body(text))
+    case = BodyCase.parse(whole)
+    assert not body_preflight(case).notices
+    pushed = case.varied({"excitation": tomllib.loads(force)["excitation"]})
+    assert [words.kind for words in pushed.excitation] == ["point-force"]
+
+
 def test_examples_of_the_case_page_fit_into_a_case() -> None:
     whole = Case.parse(toml_examples("README.md")[0])
-    examples = toml_examples("docs/case-file.md")
+    examples = [text for text in toml_examples("docs/case-file.md") if not of_body(text)]
     assert len(examples) > 5
     for example in examples:
         words = tomllib.loads(example)
@@ -150,8 +163,9 @@ def test_case_of_the_page_of_modes_is_a_case() -> None:
 
 def test_every_key_of_a_case_is_in_its_reference() -> None:
     page = "\n".join(case_reference.keys())
-    models = Case.model_json_schema()["$defs"]
-    keys = {key for model in models.values() for key in model.get("properties", {})}
+    models = [*Case.model_json_schema()["$defs"].values()]
+    models += BodyCase.model_json_schema()["$defs"].values()
+    keys = {key for model in models for key in model.get("properties", {})}
     assert len(keys) > 80
     assert {k for k in keys if f"| `{k}` |" not in page and f".{k}]`" not in page} == set()
 

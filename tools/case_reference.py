@@ -14,9 +14,11 @@ from pathlib import Path
 from types import UnionType
 from typing import Any, get_args, get_origin
 
+from pydantic.fields import FieldInfo
 from pydantic_core import PydanticUndefined
 
-from quietblade.case import Case
+from quietblade.case import AnyCase, Case
+from quietblade.case.body import BODY_EXCITATIONS, BodyWords
 from quietblade.case.excitation import EXCITATIONS
 from quietblade.case.fields import Words
 from quietblade.case.laminate import PlyWords
@@ -120,8 +122,15 @@ def kind(title: str, model: type[Words]) -> str:
     return f"### {title}\n\n{cleandoc(model.__doc__ or '')}\n\n" + "\n".join(lines(model))
 
 
+def ordered(case: type[AnyCase]) -> dict[str, FieldInfo]:
+    """Fields of a case: first what it has alone, then what all cases have."""
+    fields = case.model_fields
+    own = [name for name in fields if name not in AnyCase.model_fields]
+    return {name: fields[name] for name in (*own, *AnyCase.model_fields)}
+
+
 def keys() -> Iterator[str]:
-    """Sections of all tables, in the order of the case."""
+    """Sections of all tables, those of a body that is no blade last."""
     plain = [key for key, field in Case.model_fields.items() if field.annotation in (str, int)]
     at_top = Case.model_json_schema()["properties"]
     yield "### At the top\n\n" + "\n".join(
@@ -134,7 +143,7 @@ def keys() -> Iterator[str]:
             ),
         ]
     )
-    for name, field in Case.model_fields.items():
+    for name, field in ordered(Case).items():
         if name == "materials":
             for law, model in LAWS.items():
                 yield kind(f'`[materials.NAME]` with `law = "{law}"`', model)
@@ -154,6 +163,10 @@ def keys() -> Iterator[str]:
             yield kind(f"`[[{name}]]`", model)
         else:
             yield from tables(name, field.annotation, field.description or "")
+
+    yield from tables("body", BodyWords, "A body in place of a blade")
+    for word, model in BODY_EXCITATIONS.items():
+        yield kind(f'`[excitation]` of a body with `kind = "{word}"`', model)
 
 
 def printed(key: str, value: object, unit: str | None) -> str:

@@ -6,7 +6,7 @@ from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from quietblade.case import Case
+    from quietblade.case import BodyCase, Case, load_case
     from quietblade.results.model import Result
     from quietblade.results.store import load
     from quietblade.study.steps import (
@@ -29,19 +29,21 @@ _STEPS = (
     "solve_response", "solve_static", "tabulate_static",
 )  # fmt: skip
 _PLACES = {
-    "Case": "quietblade.case",
+    **dict.fromkeys(("BodyCase", "Case", "load_case"), "quietblade.case"),
     "Result": "quietblade.results.model",
     "load": "quietblade.results.store",
     **dict.fromkeys(_STEPS, "quietblade.study.steps"),
 }
 
 __all__ = [
+    "BodyCase",
     "Case",
     "Result",
     "__version__",
     "collect",
     "frequencies",
     "load",
+    "load_case",
     "make_blade",
     "make_mesh",
     "preset",

@@ -11,17 +11,18 @@ import pytest
 from pydantic import BaseModel, ValidationError
 
 from quietblade import linalg
-from quietblade.case import Case, Problem
+from quietblade.case import BodyCase, Case, Problem
 from quietblade.case import presets as preset_package
 from quietblade.case.fields import Quantity, Words
 from quietblade.case.formula import ARGUMENTS, formula_fault
 from quietblade.case.library import LAW_OF, NAMES, library_material
 from quietblade.case.materials import LAWS, MooneyRivlinWords, OrthotropicWords
-from quietblade.case.presets import PRESETS, preset_text
+from quietblade.case.presets import BLADES, PRESETS, preset_text
 from quietblade.case.spans import ConstantSpan, FormulaSpan, Spanwise, TableSpan
 from quietblade.case.tables import Precision, SolverName
 from quietblade.errors import CaseError
 from quietblade.geometry import spanwise
+from quietblade.study.body_preflight import body_preflight
 from quietblade.study.preflight import preflight
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -31,7 +32,7 @@ def preset(name: str) -> Case:
     return Case.parse(preset_text(name), f"{name}.toml")
 
 
-@pytest.mark.parametrize("name", PRESETS)
+@pytest.mark.parametrize("name", BLADES)
 def test_preset_is_a_good_case(name: str) -> None:
     case = preset(name)
     known = preflight(case)
@@ -89,8 +90,17 @@ def test_ratio_may_be_spelt_either_way() -> None:
     assert other.ratio(1, 3) == pytest.approx(0.2)
 
 
+def test_preset_of_a_body_is_a_good_case() -> None:
+    (name,) = set(PRESETS) - set(BLADES)
+    case = BodyCase.parse(preset_text(name))
+    known = body_preflight(case)
+    assert case.title
+    assert known.clearance > case.acoustics.gap
+    assert not known.notices
+
+
 def test_round_trip_through_si_values() -> None:
-    for name in PRESETS:
+    for name in BLADES:
         case = preset(name)
         again = Case.from_plain(json.loads(json.dumps(case.plain())))
         assert again == case

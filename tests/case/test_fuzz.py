@@ -14,9 +14,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from quietblade.case import Case, InvalidCaseError
+from quietblade.case import BodyCase, Case, InvalidCaseError, parse_case
 from quietblade.case.materials import OrthotropicWords
-from quietblade.case.presets import PRESETS, preset_text
+from quietblade.case.presets import BLADES, PRESETS, preset_text
 from quietblade.case.problems import dotted, literal
 from quietblade.cli.common import ExitCode
 from tests.case.commands import command
@@ -62,6 +62,20 @@ frequencies = ["120 Hz"]
 distance = "10 m"
 points = [["0 m", "3 m", "0.7 m"]]
 """
+MORE_OF_A_BODY = """
+[transfer]
+functions = ["mobility"]
+[[limits]]
+name = "ours"
+frequencies = ["100 Hz", "1 kHz"]
+levels = ["120 dB", "110 dB"]
+"""
+RICH = (
+    *(preset_text(name) + MORE for name in BLADES),
+    preset_text("sphere") + MORE_OF_A_BODY,
+    preset_text("sphere").replace("[excitation]", "[[excitation]]")
+    + '[[excitation]]\nkind = "point-force"\nat = [1, 0, 0]\nforce = "1 N"\n',
+)
 ODD = (
     nan, inf, -inf, 0, -1, 5e-324, 1e308, 10**400, True, "", "nan m", "1e308 m", "1e400 m",
     "1e-300 m", "90 deg", "1 GHz", "1 K", "-5 %", "\x00", "\u202e", "🦈", "9" * 500, [], {}, [[]],
@@ -81,7 +95,7 @@ TOKENS = (
 
 def assert_case_or_messages(text: str) -> None:
     try:
-        Case.parse(text, "fuzz.toml").content_key()
+        parse_case(text, "fuzz.toml").content_key()
     except InvalidCaseError as error:
         assert error.problems
         rows = len(text.split("\n"))
@@ -99,7 +113,7 @@ def assert_checked(file: bytes) -> None:
         path.write_bytes(file)
         code, out, told = command("check", str(path))
     if code == ExitCode.DONE:
-        assert "Blade" in out
+        assert "Blade" in out or "Body" in out
     else:
         assert (code, out) == (ExitCode.CASE_WRONG, "")
         rows = told.splitlines()
@@ -165,7 +179,7 @@ def places(value: Any, path: tuple[str | int, ...] = ()) -> Iterator[tuple[str |
 @st.composite
 def with_odd_values(draw: st.DrawFn) -> str:
     """A case that says much, with a few values of the wrong type, size or unit, or left out."""
-    data = tomllib.loads(draw(st.sampled_from(TEXTS)) + MORE)
+    data = tomllib.loads(draw(st.sampled_from(RICH)))
     for _ in range(draw(st.integers(1, 3))):
         *tables, last = draw(st.sampled_from([p for p in places(data) if len(p) > 1]))
         table: Any = data
@@ -219,6 +233,28 @@ def test_any_value_at_any_key(key: tuple[str, str], value: Any) -> None:
     data = SI | {table: (SI.get(table, {}) | {name: value}) if name else value}
     try:
         Case.from_plain(data, "fuzz.toml")
+    except InvalidCaseError as error:
+        assert all(problem.message for problem in error.problems)
+
+
+SPHERE = BodyCase.parse(preset_text("sphere")).plain()
+keys_of_a_body = st.sampled_from(
+    [
+        (table, key)
+        for table, info in BodyCase.model_fields.items()
+        for key in getattr(info.annotation, "model_fields", {"": None})
+    ]
+)
+
+
+@settings(max_examples=150, deadline=None)
+@given(keys_of_a_body, plain)
+def test_any_value_at_any_key_of_a_body(key: tuple[str, str], value: Any) -> None:
+    table, name = key
+    inner = SPHERE.get(table, {}) if table != "excitation" else {}
+    data = SPHERE | {table: (inner | {name: value}) if name else value}
+    try:
+        BodyCase.from_plain(data, "fuzz.toml")
     except InvalidCaseError as error:
         assert all(problem.message for problem in error.problems)
 

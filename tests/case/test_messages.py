@@ -177,7 +177,7 @@ BAD: list[tuple[str, str, str, tuple[str, ...]]] = [
     ('size = "25 mm"', 'size = "1 m"', "mesh.size", ("too coarse", 'size = "25 mm"')),
     ('size = "25 mm"', 'size = "0.1 mm"', "mesh.size", ("too fine", "triangles")),
     ('size = "25 mm"', 'size = "25 mm"\nwater_size = "1 mm"', "mesh.water_size",
-     ("between the size on the blade and the sphere's radius",)),
+     ("between the size on the surface and the sphere's radius",)),
     ('sphere_radius = "1.3 m"', 'sphere_radius = "0.4 m"', "acoustics.sphere_radius",
      ("out of the sphere", "A radius above")),
     ('sphere_radius = "1.3 m"', 'sphere_radius = "0.53 m"', "acoustics.sphere_radius",

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 from jsonschema import Draft202012Validator
 
-from quietblade.case import Case
+from quietblade.case import BodyCase, Case
 from quietblade.case.presets import PRESETS, preset_text
 from quietblade.case.schema import case_schema
 from tests.case.test_messages import CASE
@@ -145,4 +145,12 @@ def test_every_key_is_explained_and_defaults_are_written_as_in_a_file() -> None:
 
 
 def test_every_table_of_the_case_is_there() -> None:
-    assert set(SCHEMA["properties"]) == set(Case.model_fields)
+    assert set(SCHEMA["properties"]) == set(Case.model_fields) | set(BodyCase.model_fields)
+
+
+def test_a_file_is_of_a_blade_or_of_another_body() -> None:
+    ball = preset_text("sphere")
+    assert problems(ball.replace('kind = "spherical-shell"', 'kind = "cube"'))
+    assert problems(ball.replace("half_angle", "half_angel"))
+    assert problems(ball[ball.index("[materials") :])
+    assert problems(CASE[CASE.index("[materials") :])

@@ -5,7 +5,7 @@ import tomllib
 
 import pytest
 
-from quietblade.case import Case, InvalidCaseError
+from quietblade.case import Case, InvalidCaseError, parse_case
 from quietblade.case.presets import PRESETS, preset_text
 from quietblade.case.source import parse_source
 from quietblade.case.versions import FORMAT, RENAMED, Renamed, migrated, migrated_text
@@ -100,7 +100,7 @@ def test_a_file_without_a_format_is_of_the_first() -> None:
         text = preset_text(name)
         without = "".join(row for row in text.splitlines(True) if not row.startswith("format"))
         assert "format" not in tomllib.loads(without)
-        assert Case.parse(without).content_key() == Case.parse(text).content_key()
+        assert parse_case(without).content_key() == parse_case(text).content_key()
         assert tomllib.loads(migrated_text(without, name)) == tomllib.loads(text)
 
 

@@ -8,7 +8,7 @@ from typing import Any, get_args
 
 import pytest
 
-from quietblade.case import Case, tables
+from quietblade.case import Case, parse_case, tables
 from quietblade.case import flow as flow_words
 from quietblade.case.presets import PRESETS, preset_text
 from quietblade.cli.main import execute
@@ -78,7 +78,7 @@ def test_every_choice_of_a_case_has_its_sources(words: Any, table: dict[str, Any
 
 @pytest.mark.parametrize("preset", PRESETS)
 def test_the_paper_comes_first_and_all_keys_are_known(preset: str) -> None:
-    found = citations(Case.parse(preset_text(preset)))
+    found = citations(parse_case(preset_text(preset)))
     assert found[0].reference is not None
     assert found[0].reference.key == "TwoStep"
     assert len({c.text for c in found}) == len(found)

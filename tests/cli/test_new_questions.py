@@ -13,7 +13,7 @@ import pytest
 from typer.testing import CliRunner
 
 from quietblade.case import Case
-from quietblade.case.presets import PRESETS, preset_text
+from quietblade.case.presets import BLADES, PRESETS, preset_text
 from quietblade.case.writing import case_text
 from quietblade.cli.common import ExitCode
 from quietblade.cli.main import app, execute
@@ -33,7 +33,7 @@ def answer(*lines: str, arguments: tuple[str, ...] = ("new", "--ask")) -> str:
     return ended.output
 
 
-@pytest.mark.parametrize("preset", PRESETS)
+@pytest.mark.parametrize("preset", BLADES)
 def test_enter_all_the_way_gives_the_preset(preset: str) -> None:
     answer("mine", preset, *[""] * 30)
     ours, theirs = Case.load("mine.toml"), Case.parse(preset_text(preset))
@@ -42,6 +42,12 @@ def test_enter_all_the_way_gives_the_preset(preset: str) -> None:
     text = Path("mine.toml").read_text(encoding="utf-8")
     assert f"starting from the preset {preset}" in text
     assert max(map(len, text.splitlines())) < 101
+
+
+def test_there_are_no_questions_about_a_sphere() -> None:
+    (sphere,) = set(PRESETS) - set(BLADES)
+    assert execute(["new", "mine", "--ask", "--preset", sphere]) == ExitCode.CASE_WRONG
+    assert not Path("mine.toml").exists()
 
 
 def test_a_foil_of_glass_with_a_short_film() -> None:
@@ -134,7 +140,7 @@ def test_at_a_terminal_no_name_is_a_wish_to_be_asked() -> None:
     assert Case.load("mine.toml").blade.span == 0.3
 
 
-@pytest.mark.parametrize("name", PRESETS)
+@pytest.mark.parametrize("name", BLADES)
 def test_a_written_case_says_the_same(name: str) -> None:
     data = tomllib.loads(preset_text(name))
     data["title"] = 'a "quoted" \\ title, \t tab and é'

@@ -3,6 +3,7 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import fields, replace
+from types import UnionType
 from typing import get_args, get_origin, get_type_hints
 
 import numpy as np
@@ -19,9 +20,14 @@ from tests.results.synthetic import make_result
 def all_records(cls: type[Record] = m.Result) -> Iterator[type[Record]]:
     yield cls
     for hint in get_type_hints(cls).values():
-        member = get_args(hint)[1] if get_origin(hint) is Mapping else hint
+        member = get_args(hint)[1] if get_origin(hint) is Mapping else record_type(hint)
         if isinstance(member, type) and issubclass(member, Record):
             yield from all_records(member)
+
+
+def record_type(hint: object) -> object:
+    """What a member is that may be None."""
+    return get_args(hint)[0] if get_origin(hint) is UnionType else hint
 
 
 RECORDS = [*all_records(), AlternativeTable]
@@ -39,7 +45,9 @@ def test_every_attribute_is_registered_and_every_entry_exists(record: type[Recor
         field.name
         for field in fields(record)
         if get_origin(hints[field.name]) is not Mapping
-        and not issubclass(get_origin(hints[field.name]) or hints[field.name], Record)
+        and not issubclass(
+            get_origin(record_type(hints[field.name])) or record_type(hints[field.name]), Record
+        )
     }
     registered = {q.name for q in record.quantities()}
     assert plain <= registered

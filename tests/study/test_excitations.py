@@ -15,12 +15,13 @@ from quietblade.linalg import make_solver
 from quietblade.mesh import Mesh, build_mesh
 from quietblade.propulsion.structure import Structure
 from quietblade.study import solids, translate
+from quietblade.study.blade_vibration import solve_vibration
 from quietblade.study.excitation_outcome import excitation_table, transfer_table
 from quietblade.study.loads import on_face
 from quietblade.study.sound import Sound, solve_sound
 from quietblade.study.statics import Statics
 from quietblade.study.transfer import impedance
-from quietblade.study.vibration import Vibration, solve_vibration
+from quietblade.study.vibration import Vibration
 from quietblade.typing import silent
 from quietblade.vibroacoustics.excitation import pressure_force
 from quietblade.vibroacoustics.loads import Excitation, Spectrum

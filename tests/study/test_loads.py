@@ -18,9 +18,9 @@ from quietblade.propulsion.loads import (
     UniformPressure,
 )
 from quietblade.study import translate
+from quietblade.study.blade_vibration import solve_vibration
 from quietblade.study.loads import steady_loads, support
 from quietblade.study.statics import solve_statics
-from quietblade.study.vibration import solve_vibration
 from quietblade.typing import silent
 from tests.study.test_run import COARSE
 

@@ -7,10 +7,10 @@ from typing import Any
 
 import pytest
 
-from quietblade.case import Case
+from quietblade.case import BodyCase, Case
 from quietblade.case.presets import preset_text
 from quietblade.study import stages as table
-from quietblade.study.stages import ALWAYS, Origin, inputs, origins, stages
+from quietblade.study.stages import ALWAYS, Origin, body_stages, inputs, origins, stages
 
 BOTH = ("C0", "C1")
 SWEEPS = {"sweep C0", "sweep C1", "mode tables"}
@@ -52,6 +52,18 @@ def test_every_key_of_the_case_is_read_by_a_stage() -> None:
                 "of each of them in quietblade/study/stages.py, or add a stage to the table; add "
                 "it to ALWAYS if only what is made anew in every run depends on it."
             )
+
+
+def test_every_key_of_a_body_is_read_by_a_stage() -> None:
+    case = BodyCase.parse(preset_text("sphere")).varied({"transfer.functions": ["mobility"]})
+    unread = {
+        key
+        for key, _ in inputs(case)
+        if not any(stage.depends_on(key) for stage in body_stages().values())
+    }
+    # the gap is held against the sphere before a run, and nothing flows
+    known = (*ALWAYS, "acoustics.gap", "water.kinematic_viscosity")
+    assert not {key for key in unread if not table._named(key, known)}
 
 
 def test_what_the_table_names_is_there() -> None:
@@ -132,6 +144,23 @@ def test_what_a_change_touches() -> None:
     assert changed(case, mesh__size="30 mm") == ALL
     assert changed(case, mesh__size="0.023 m") == set()
     assert changed(case, **{"materials.polymer.loss_factor": 0.3}) == STEP_2
+
+
+def test_what_a_change_of_a_body_touches() -> None:
+    case = BodyCase.parse(preset_text("sphere"))
+    sweeps = {"sweep C0", "mode tables"}
+
+    def touched(key: str, value: Any) -> set[str]:
+        before, after = origins(case), origins(case.varied({key: value}))
+        return {name for name in after if after[name].key != before[name].key}
+
+    assert touched("title", "another") == set()
+    assert touched("far_field.planes", ["xy"]) == sweeps
+    assert touched("acoustics.accuracy", "0.1 dB") == {"modes C0", *sweeps}
+    assert touched("materials.structural-steel.loss_factor", 0.1) == {"modes C0", *sweeps}
+    assert touched("body.thickness", "51 mm") == {"mesh", "modes C0", *sweeps}
+    cap = {"kind": "pressure", "half_angle": "21 deg"}
+    assert touched("excitation", cap) == {"mesh", "modes C0", *sweeps}
 
 
 def test_reasons_are_told_in_words_of_the_case() -> None:

@@ -3,7 +3,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Annotated, Any, ClassVar, Literal, TypeAlias
+from typing import Annotated, Any, ClassVar, Literal, TypeAlias, TypeVar
 
 from pydantic import (
     AfterValidator,
@@ -46,6 +46,7 @@ Axis = Literal["x", "y", "z"]
 Motion = Literal["displacement", "velocity", "acceleration", "rotation"]
 Signal = Literal["harmonic", "random"]
 Correlation = Literal["none", "full"]
+AnyWords = TypeVar("AnyWords", bound="ExcitationWords")
 Function = Literal["mobility", "power-per-force", "blocked-force", "shaft"]
 
 MOTIONS: Mapping[str, tuple[units.Kind, units.Kind]] = {
@@ -113,6 +114,7 @@ class ExcitationWords(Words):
     example: ClassVar[units.Kind] = units.PRESSURE
     density_example: ClassVar[units.Kind] = units.PRESSURE_DENSITY
 
+    kind: str = Field(title="Kind", description="What sets it in motion")
     name: Text = Field("", title="Name", description="Name in results; the kind if not given")
     phase: Angle = Field(0.0, title="Phase", description="Phase against the other loads")
     table: Text | None = Field(None, title="Table", description=_TABLE)
@@ -157,8 +159,8 @@ class ExcitationWords(Words):
         return self
 
 
-class PatchWords(ExcitationWords):
-    """Pressure on a patch of the blade's surface, pushing into the blade."""
+class PressureWords(ExcitationWords):
+    """Pressure on a part of the surface."""
 
     amplitude_key: ClassVar[str] = "pressure"
 
@@ -171,6 +173,11 @@ class PatchWords(ExcitationWords):
     density: Annotated[float, Quantity(units.PRESSURE_DENSITY, above=0.0)] | None = Field(
         None, title="Density", description=_DENSITY
     )
+
+
+class PatchWords(PressureWords):
+    """Pressure on a patch of the blade's surface, pushing into the blade."""
+
     side: Annotated[Side, one_of(Side, "a side of the blade")] = Field(
         "upper", title="Side", description="Upper (suction) or lower face"
     )
@@ -178,8 +185,8 @@ class PatchWords(ExcitationWords):
     chord: Extent = Field(title="Chord", description="Range of chord fractions")
 
 
-class PushWords(ExcitationWords):
-    """Force at a point of the surface, in a fixed direction."""
+class ForceWords(ExcitationWords):
+    """Force at a point of the surface."""
 
     amplitude_key: ClassVar[str] = "force"
     example: ClassVar[units.Kind] = units.FORCE
@@ -192,6 +199,11 @@ class PushWords(ExcitationWords):
     density: Annotated[float, Quantity(units.FORCE_DENSITY, above=0.0)] | None = Field(
         None, title="Density", description=_DENSITY
     )
+
+
+class PushWords(ForceWords):
+    """Force at a point of the surface, in a fixed direction."""
+
     direction: Direction = Field(
         title="Direction", description="Along x, y and z; its length does not matter"
     )
@@ -273,21 +285,28 @@ EXCITATIONS: dict[str, type[AnyExcitationWords]] = {
 """Model of each kind of excitation."""
 
 
-def _listed(value: Any) -> Any:
+def listed(value: Any) -> Any:
     """Take one table for a list of one, and a table without a kind for a pressure."""
     rows = [value] if isinstance(value, Mapping) else value
     if not isinstance(rows, list | tuple):
         raise wrong("a table is needed", "Write its keys below [excitation] or [[excitation]]")
     if not rows:
-        raise wrong("is empty", "Nothing moves the blade: add a table [[excitation]]")
+        raise wrong("is empty", "Nothing is moved: add a table [[excitation]]")
     return [{"kind": "pressure", **row} if isinstance(row, Mapping) else row for row in rows]
+
+
+def distinct_names(rows: tuple[AnyWords, ...]) -> tuple[AnyWords, ...]:
+    """Refuse two excitations of one name."""
+    names = [row.name for row in rows]
+    for number, name in enumerate(names):
+        if name and name in names[:number]:
+            raise wrong("names two excitations", "Choose another", at=(number, "name"))
+    return rows
 
 
 def _apart(rows: tuple[AnyExcitationWords, ...]) -> tuple[AnyExcitationWords, ...]:
     for number, row in enumerate(rows):
         for other, before in enumerate(rows[:number]):
-            if row.name and row.name == before.name:
-                raise wrong("names two excitations", "Choose another", at=(number, "name"))
             if isinstance(row, PatchWords) and isinstance(before, PatchWords):
                 _check_apart(number, row, other, before)
     return rows
@@ -309,7 +328,8 @@ def _check_apart(number: int, row: PatchWords, other: int, before: PatchWords) -
 Excitations = Annotated[
     tuple[Annotated[AnyExcitationWords, Field(discriminator="kind")], ...],
     AfterValidator(_apart),
-    BeforeValidator(_listed),
+    AfterValidator(distinct_names),
+    BeforeValidator(listed),
 ]
 """One table, or a list of tables."""
 

@@ -2,7 +2,7 @@
 """From validation errors to findings that a user can act on."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, get_args
 
 from pydantic import BaseModel, ValidationError
@@ -14,7 +14,7 @@ from quietblade.case.fields import CASE_PROBLEM, Quantity
 from quietblade.case.laminate import PlyWords
 from quietblade.case.library import LAW_OF
 from quietblade.case.loss import loss_model
-from quietblade.case.materials import BLADE_LAWS, FILM_LAWS, LAWS, ply_findings
+from quietblade.case.materials import BLADE_LAWS, BODY_LAWS, FILM_LAWS, LAWS, ply_findings
 from quietblade.case.problems import Path, dotted, nearest, suggestion
 from quietblade.case.source import Finding, as_written
 from quietblade.case.spans import Spanwise
@@ -57,6 +57,16 @@ _CHOICES = {
 }
 
 
+def _choice(name: str, root: Model) -> _Choice | None:
+    """Models of the entries of a table; each kind of case has excitations of its own."""
+    choice = _CHOICES.get(name)
+    own = getattr(root, "excitations", None) if name == "excitation" else None
+    return replace(choice, models=own) if choice and own else choice
+
+
+_PART_LAWS = (("blade", BLADE_LAWS), ("film", FILM_LAWS), ("body", BODY_LAWS))
+
+
 def explain(error: ValidationError, data: Mapping[str, Any], root: Model) -> Iterator[Finding]:
     """Say what is wrong for each validation error of a case."""
     details = error.errors(include_url=False)
@@ -82,7 +92,8 @@ def _explain(detail: ErrorDetails, data: Mapping[str, Any], root: Model) -> Find
     if kind == "extra_forbidden":
         return _unknown(path, data, root)
     if kind in ("union_tag_not_found", "union_tag_invalid"):
-        choice = _CHOICES[str(path[0])]
+        choice = _choice(str(path[0]), root)
+        assert choice is not None
         fault = "is missing" if kind == "union_tag_not_found" else f"is not {choice.what}"
         return Finding((*path, choice.key), fault, f"Known: {_listed(choice.models)}")
     message, remedy = _TYPES.get(kind, (detail["msg"][:1].lower() + detail["msg"][1:], ""))
@@ -100,10 +111,12 @@ def _missing(path: Path, data: Mapping[str, Any], root: Model) -> Finding:
     info = model.model_fields[str(key)] if model else None
     if info is None:
         return Finding(path, "is missing", f"Add {key}")
-    inner = _whole_table(str(key), info)
+    inner = _whole_table(str(key), info, root)
     if inner is not None:
         wanted = [name for name, f in inner.model_fields.items() if f.is_required()]
-        return Finding(path, "this table is missing", f"Add [{key}] with {', '.join(wanted)}")
+        instead = ", or [body] for a sphere in water" if path == ("blade",) else ""
+        remedy = f"Add [{key}] with {', '.join(wanted)}{instead}"
+        return Finding(path, "this table is missing", remedy)
     return Finding(path, "is missing", f"{info.description}. Add {_example(str(key), info)}")
 
 
@@ -126,7 +139,7 @@ def _unknown(path: Path, data: Mapping[str, Any], root: Model) -> Finding:
     elsewhere = [
         dotted((name, str(key)))
         for name, info in root.model_fields.items()
-        if (inner := _whole_table(name, info)) and key in inner.model_fields
+        if (inner := _whole_table(name, info, root)) and key in inner.model_fields
     ]
     if elsewhere:
         return Finding(path, "unknown key here", f"Did you mean {' or '.join(elsewhere)}?")
@@ -135,7 +148,7 @@ def _unknown(path: Path, data: Mapping[str, Any], root: Model) -> Finding:
 
 def model_at(path: Path, data: Mapping[str, Any], root: Model) -> Model | None:
     """Model of the table at a path; None where there is no table."""
-    choice = _CHOICES.get(str(path[0])) if path else None
+    choice = _choice(str(path[0]), root) if path else None
     if choice is not None:
         if path[2:3] == ("plies",) and len(path) == 4:
             return PlyWords
@@ -151,9 +164,9 @@ def model_at(path: Path, data: Mapping[str, Any], root: Model) -> Model | None:
     return model
 
 
-def _whole_table(name: str, info: FieldInfo) -> Model | None:
+def _whole_table(name: str, info: FieldInfo, root: Model) -> Model | None:
     """Model of a table at the top, the usual one where there are several; None for other keys."""
-    choice = _CHOICES.get(name)
+    choice = _choice(name, root)
     return choice.models.get(choice.usual) if choice else _table_model(info.annotation)
 
 
@@ -183,7 +196,7 @@ def material_findings(data: Mapping[str, Any]) -> Iterator[Finding]:
             )
     laws = dict(LAW_OF) | _laws(data)
     yield from ply_findings(data, laws)
-    for part, allowed in (("blade", BLADE_LAWS), ("film", FILM_LAWS)):
+    for part, allowed in _PART_LAWS:
         table = data.get(part)
         name = table.get("material") if isinstance(table, Mapping) else None
         if not isinstance(name, str):

@@ -292,6 +292,9 @@ LAWS: Mapping[str, type[SolidWords]] = {
 BLADE_LAWS = ("isotropic", "orthotropic", "anisotropic", "laminate")
 """Laws that the blade may have."""
 
+BODY_LAWS = ("isotropic",)
+"""Laws that a body other than a blade may have."""
+
 FILM_LAWS = ("mooney-rivlin", "neo-hookean")
 """Laws that the film may have."""
 

@@ -5,6 +5,7 @@ from typing import Any
 
 from pydantic.json_schema import GenerateJsonSchema, models_json_schema
 
+from quietblade.case.body import BodyCase
 from quietblade.case.fields import TABLES, Words
 from quietblade.case.laminate import PlyWords
 from quietblade.case.loss import LOSS_MODELS, SHIFTS, PrestrainWords
@@ -33,22 +34,32 @@ def case_schema() -> dict[str, Any]:
     It knows keys, types, words and the form of quantities; whether a unit is a known one, and
     what values mean together, only `Case` knows.
     """
-    models = [(model, "validation") for model in (Case, *_BY_NAME)]
+    models = [(model, "validation") for model in (Case, BodyCase, *_BY_NAME)]
     _, schema = models_json_schema(models, schema_generator=_Generator)  # type: ignore[arg-type]  # the mode is a literal
     definitions = {name: _as_toml(inner) for name, inner in schema["$defs"].items()}
     for definition in definitions.values():
         del definition["title"]  # the name of a class
-    case = definitions.pop("Case")
-    loads = case["properties"]["excitation"]
-    case["properties"]["excitation"] = {
-        "title": loads.pop("title"),
-        "description": loads.pop("description"),
-        "anyOf": [loads["items"], loads],  # one table may stand for a list of one
+    case, body = definitions.pop("Case"), definitions.pop("BodyCase")
+    kinds = [part["properties"].pop("excitation") for part in (case, body)]
+    needed = [set(part.pop("required")) for part in (case, body)]
+    shared = needed[0] & needed[1]
+    one = {"anyOf": [kind["items"] for kind in kinds]}
+    case["properties"] |= {
+        "body": body["properties"]["body"],
+        "excitation": {
+            "title": kinds[0]["title"],
+            "description": "What sets it in motion: a table, or several",
+            # one table may stand for a list of one
+            "anyOf": [one, {"type": "array", "items": one}],
+        },
     }
     return {
         "$schema": GenerateJsonSchema.schema_dialect,
         "title": "Case file of quietblade",
         **case,
+        "description": "A study of one blade, or of another body",
+        "required": sorted(shared),
+        "oneOf": [{"required": sorted(own - shared)} for own in needed],
         "$defs": definitions,
     }
 

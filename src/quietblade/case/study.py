@@ -9,9 +9,9 @@ from typing import Annotated, Any, Self, TypeVar
 
 from pydantic import AfterValidator, Field, PrivateAttr, ValidationError
 
+from quietblade.case import AnyCase, load_case
 from quietblade.case.explain import explain
 from quietblade.case.fields import Text, Words, entries_from, wrong
-from quietblade.case.model import Case
 from quietblade.case.problems import InvalidCaseError, Path, Problem, shown, suggestion
 from quietblade.case.source import Finding, Source, read_source
 
@@ -164,7 +164,7 @@ class Study(Words):
                 found[_grid_name(changes)] = changes
         return found or {"base": {}}
 
-    def base(self, name: str) -> Case:
+    def base(self, name: str) -> AnyCase:
         """Read a base case, before any change.
 
         Raises
@@ -172,9 +172,9 @@ class Study(Words):
         InvalidCaseError
             The case file has problems.
         """
-        return Case.load(FilePath(self.file).parent / self.cases[name])
+        return load_case(FilePath(self.file).parent / self.cases[name])
 
-    def changed(self, case: Case, variant: str) -> Case:
+    def changed(self, case: AnyCase, variant: str) -> AnyCase:
         """Make a variant of a base case.
 
         Raises

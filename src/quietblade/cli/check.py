@@ -23,18 +23,18 @@ def check(
     Nothing heavy is computed. The exit code is 0 unless the case is wrong: warnings do not count.
     """
     # imported here, so that help does not wait for the words, nor a wrong case for the geometry
-    from quietblade.case import Case, InvalidCaseError  # noqa: PLC0415
+    from quietblade.case import InvalidCaseError, load_case  # noqa: PLC0415
 
     try:
         if migrate:
             _migrate(case)
-        words = Case.load(case)
+        words = load_case(case)
         from quietblade.cli.describe import case_data, case_tables  # noqa: PLC0415
         from quietblade.cli.describe_outlook import outlook_tables  # noqa: PLC0415
+        from quietblade.study.examine import examine  # noqa: PLC0415
         from quietblade.study.outlook import look_ahead  # noqa: PLC0415
-        from quietblade.study.preflight import preflight  # noqa: PLC0415
 
-        known = preflight(words)
+        known = examine(words)
         ahead = look_ahead(words, known)
     except InvalidCaseError as error:
         if not as_json:
@@ -52,12 +52,12 @@ def check(
 
 
 def _migrate(path: Path) -> None:
-    from quietblade.case import Case  # noqa: PLC0415
+    from quietblade.case import parse_case  # noqa: PLC0415
     from quietblade.case.source import read_source  # noqa: PLC0415
     from quietblade.case.versions import migrated_text  # noqa: PLC0415
 
     old = read_source(path).text
     new = migrated_text(old, str(path))
-    Case.parse(new, str(path))  # what is not a case is left as it is
+    parse_case(new, str(path))  # what is not a case is left as it is
     if new != old:
         write_file(path.resolve(), new)

@@ -10,7 +10,7 @@ from quietblade import __version__
 from quietblade.cli.common import ExitCode, console, show_json
 
 if TYPE_CHECKING:
-    from quietblade.case import Case
+    from quietblade.case import AnyCase
 
 
 def cite(
@@ -46,17 +46,17 @@ def cite(
     return ExitCode.DONE
 
 
-def _case(what: Path) -> "tuple[Case, str]":
+def _case(what: Path) -> "tuple[AnyCase, str]":
     """Case of a run, or of a file, and the version that computed it."""
-    from quietblade.case import Case  # noqa: PLC0415
+    from quietblade.case import load_case, parse_case  # noqa: PLC0415
 
     if what.is_file():
-        return Case.load(what), __version__
+        return load_case(what), __version__
     from quietblade.results.store import RunFolder  # noqa: PLC0415
 
     folder = RunFolder(what)
     run = folder.load().run
-    return Case.parse(run.case_text, str(folder.case)), run.code_version
+    return parse_case(run.case_text, str(folder.case)), run.code_version
 
 
 def _software(version: str) -> str:

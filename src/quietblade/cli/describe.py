@@ -7,9 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from quietblade.case import Case
+from quietblade.case import AnyCase, BodyCase, Case
+from quietblade.case.body import CapWords, PointWords
 from quietblade.case.excitation import (
-    AnyExcitationWords,
+    ExcitationWords,
+    LinePushWords,
     PatchWords,
     PushWords,
     RootMotionWords,
@@ -22,26 +24,52 @@ from quietblade.case.materials import (
     SolidWords,
 )
 from quietblade.case.spans import ConstantSpan, FormulaSpan, SpanValue
+from quietblade.case.tables import AcousticsWords
 from quietblade.case.units import in_unit
 from quietblade.cli.describe_outlook import outlook_data
+from quietblade.study.body_preflight import BodyPreflight
 from quietblade.study.losses import Modulus
 from quietblade.study.outlook import Outlook
-from quietblade.study.preflight import Preflight
+from quietblade.study.preflight import Preflight, Surroundings
 from quietblade.study.spectra import names
 
 Rows = list[tuple[str, str]]
 
 
-def case_tables(case: Case, known: Preflight) -> list[tuple[str, Rows]]:
+def case_tables(case: AnyCase, known: Surroundings) -> list[tuple[str, Rows]]:
     """Say in words and convenient units what a case says and what follows from it."""
     return [
-        ("Blade", _blade_rows(case, known)),
-        ("Flow", _flow_rows(case, known)),
+        *_own_tables(case, known),
         ("Acoustics", _acoustics_rows(case, known)),
         ("Sound far away", _far_rows(case)),
         *([("Complex moduli", _modulus_rows(case, known))] if known.moduli else []),
         ("Numbers", _number_rows(case, known)),
     ]
+
+
+def _own_tables(case: AnyCase, known: Surroundings) -> list[tuple[str, Rows]]:
+    """Say what only a blade has, or another body."""
+    if isinstance(case, Case) and isinstance(known, Preflight):
+        return [("Blade", _blade_rows(case, known)), ("Flow", _flow_rows(case, known))]
+    assert isinstance(case, BodyCase)
+    assert isinstance(known, BodyPreflight)
+    return [("Body", _body_rows(case, known))]
+
+
+def _body_rows(case: BodyCase, known: BodyPreflight) -> Rows:
+    body = case.body
+    return [
+        ("kind", f"{body.kind} about the origin, nothing inside, free in the water"),
+        ("outer radius", _mm(body.radius)),
+        ("wall", f"{_mm(body.thickness)} thick"),
+        ("volume, mass", f"{1e3 * known.volume:.4g} litres, {known.mass:.4g} kg"),
+        ("material", f"{body.material}: {_solid(case.material('body'))}"),
+        ("water", _water(case)),
+    ]
+
+
+def _water(case: AnyCase) -> str:
+    return f"{case.water.density:g} kg/m^3, sound speed {case.water.sound_speed:g} m/s"
 
 
 def _blade_rows(case: Case, known: Preflight) -> Rows:
@@ -74,10 +102,10 @@ def _blade_rows(case: Case, known: Preflight) -> Rows:
 
 
 def _flow_rows(case: Case, known: Preflight) -> Rows:
-    flow, water = case.flow, case.water
+    flow = case.flow
     root, tip = (degrees(angle) for angle in known.incidence)
     return [
-        ("water", f"{water.density:g} kg/m^3, sound speed {water.sound_speed:g} m/s"),
+        ("water", _water(case)),
         ("speed", f"{flow.speed:.4g} m/s along the rotor axis"),
         ("rotation", f"{flow.rotation:.4g} rad/s ({in_unit(flow.rotation, 'rpm'):.4g} rpm)"),
         ("incidence", f"{root:.3g} deg at the root, {tip:.3g} deg at the tip (undeformed)"),
@@ -89,7 +117,7 @@ def _flow_rows(case: Case, known: Preflight) -> Rows:
     ]
 
 
-def _acoustics_rows(case: Case, known: Preflight) -> Rows:
+def _acoustics_rows(case: AnyCase, known: Surroundings) -> Rows:
     acoustics = case.acoustics
     low, high = acoustics.band
     centre = ", ".join(f"{x:.4g}" for x in known.centre)
@@ -101,14 +129,18 @@ def _acoustics_rows(case: Case, known: Preflight) -> Rows:
         ("gap", f"{_mm(known.clearance)} at rest, {_mm(acoustics.gap)} asked for"),
         ("radiation", f"{acoustics.radiation}, kR = {known.kr[0]:.3g} to {known.kr[1]:.3g}"),
         ("tangent, loss", f"{acoustics.tangent}, {acoustics.loss}"),
-        ("stream", "damps the blade" if acoustics.flow_damping else "does not damp the blade"),
+        *([("stream", _stream(acoustics))] if isinstance(case, Case) else []),
         ("modes", "wet and dry" if acoustics.dry_modes else "wet"),
         *_campbell_rows(case),
         *_excitation_rows(case),
     ]
 
 
-def _far_rows(case: Case) -> Rows:
+def _stream(acoustics: AcousticsWords) -> str:
+    return "damps the blade" if acoustics.flow_damping else "does not damp the blade"
+
+
+def _far_rows(case: AnyCase) -> Rows:
     far, limits = case.far_field, case.limits
     given = "".join(f", {f:.6g} Hz" for f in far.frequencies)
     place = "far away" if far.distance is None else f"at {far.distance:g} m"
@@ -126,9 +158,9 @@ def _far_rows(case: Case) -> Rows:
     return rows
 
 
-def _campbell_rows(case: Case) -> Rows:
-    words = case.campbell
-    if words is None:
+def _campbell_rows(case: AnyCase) -> Rows:
+    words = case.campbell if isinstance(case, Case) else None
+    if words is None or not isinstance(case, Case):
         return []
     count = len(words.speeds)
     orders = ", ".join(map(str, words.orders))
@@ -142,7 +174,7 @@ def _campbell_rows(case: Case) -> Rows:
     ]
 
 
-def _excitation_rows(case: Case) -> Rows:
+def _excitation_rows(case: AnyCase) -> Rows:
     random = case.acoustics.signal == "random"
     rows = [
         (f"excitation {name}", f"{_amplitude(words, random=random)} {_place(words)}")
@@ -155,7 +187,7 @@ def _excitation_rows(case: Case) -> Rows:
     return rows
 
 
-def _amplitude(words: AnyExcitationWords, *, random: bool) -> str:
+def _amplitude(words: ExcitationWords, *, random: bool) -> str:
     if words.table is not None:
         return f"{words.table} [{words.density_unit if random else words.unit}],"
     if random:
@@ -165,7 +197,14 @@ def _amplitude(words: AnyExcitationWords, *, random: bool) -> str:
     return f"{value:g} {words.unit}{phase}"
 
 
-def _place(words: AnyExcitationWords) -> str:
+def _place(words: ExcitationWords) -> str:
+    if isinstance(words, CapWords):
+        return f"on a cap of {degrees(words.half_angle):.4g} deg about ({_listed(words.axis)})"
+    if isinstance(words, PointWords):
+        along = "towards the centre"
+        if words.direction is not None:
+            along = f"along ({_listed(words.direction)})"
+        return f"at ({_listed(words.at)}) from the centre, {along}"
     if isinstance(words, PatchWords):
         return (
             f"on the {words.side} face, span {_percent(words.span)}, chord {_percent(words.chord)}"
@@ -173,23 +212,27 @@ def _place(words: AnyExcitationWords) -> str:
     if isinstance(words, RootMotionWords):
         how = "about" if words.motion == "rotation" else "along"
         return f"{words.motion} of the root {how} {words.axis}"
+    assert isinstance(words, PushWords | LinePushWords)
     ends = (words.at,) if isinstance(words, PushWords) else (words.start, words.end)
     places = " to ".join(f"({100 * s:.3g} % span, {100 * xi:.3g} % chord)" for s, xi in ends)
-    along = ", ".join(f"{x:g}" for x in words.direction)
-    return f"on the {words.face} face at {places}, along ({along})"
+    return f"on the {words.face} face at {places}, along ({_listed(words.direction)})"
 
 
-def _number_rows(case: Case, known: Preflight) -> Rows:
-    high = case.acoustics.band[1]
+def _listed(vector: tuple[float, ...]) -> str:
+    return ", ".join(f"{x:g}" for x in vector)
+
+
+def _number_rows(case: AnyCase, known: Surroundings) -> Rows:
+    high, what = case.acoustics.band[1], case.parts[0]
     return [
-        ("mesh", f"{_mm(case.mesh.size)} on the blade: about {known.surface_elements} triangles"),
+        ("mesh", f"{_mm(case.mesh.size)} on the {what}: about {known.surface_elements} triangles"),
         (
             "in water",
             f"{known.elements_per_acoustic_wavelength:.3g} elements per wavelength of "
             f"{known.acoustic_wavelength:.3g} m at {high:g} Hz",
         ),
         (
-            "on the blade",
+            f"on the {what}",
             f"about {known.elements_per_bending_wavelength:.2g} elements per bending wavelength of "
             f"{known.bending_wavelength:.2g} m at {high:g} Hz",
         ),
@@ -198,7 +241,7 @@ def _number_rows(case: Case, known: Preflight) -> Rows:
     ]
 
 
-def case_data(case: Case, known: Preflight, ahead: Outlook) -> dict[str, Any]:
+def case_data(case: AnyCase, known: Surroundings, ahead: Outlook) -> dict[str, Any]:
     """Return the same as plain data in SI units, angles in rad."""
     return {
         "valid": True,
@@ -206,13 +249,10 @@ def case_data(case: Case, known: Preflight, ahead: Outlook) -> dict[str, Any]:
         "content_key": case.content_key(),
         "case": case.plain(),
         "derived": {
-            "volume_m3": known.blade.volume(),
-            "planform_area_m2": known.blade.planform_area(),
+            **_own_data(known),
             "sphere_centre_m": known.centre.tolist(),
             "sphere_radius_m": known.radius,
             "clearance_m": known.clearance,
-            "film_cover_m": known.film_cover,
-            "incidence_rad": known.incidence.tolist(),
             "kr": known.kr.tolist(),
             "acoustic_wavelength_m": known.acoustic_wavelength,
             "bending_wavelength_m": known.bending_wavelength,
@@ -226,7 +266,19 @@ def case_data(case: Case, known: Preflight, ahead: Outlook) -> dict[str, Any]:
     }
 
 
-def _modulus_data(case: Case, modulus: Modulus) -> dict[str, Any]:
+def _own_data(known: Surroundings) -> dict[str, Any]:
+    if isinstance(known, Preflight):
+        return {
+            "volume_m3": known.blade.volume(),
+            "planform_area_m2": known.blade.planform_area(),
+            "film_cover_m": known.film_cover,
+            "incidence_rad": known.incidence.tolist(),
+        }
+    assert isinstance(known, BodyPreflight)
+    return {"volume_m3": known.volume, "mass_kg": known.mass}
+
+
+def _modulus_data(case: AnyCase, modulus: Modulus) -> dict[str, Any]:
     band = np.array(case.acoustics.band)
     g = modulus.at(band)
     return {
@@ -278,7 +330,7 @@ def _solid(words: SolidWords) -> str:
     return f"{words.law}, {shear}, {damping}, {density}"
 
 
-def _modulus_rows(case: Case, known: Preflight) -> Rows:
+def _modulus_rows(case: AnyCase, known: Surroundings) -> Rows:
     low, high = case.acoustics.band
     rows = []
     for modulus in known.moduli:

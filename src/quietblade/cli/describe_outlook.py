@@ -21,7 +21,8 @@ def outlook_tables(ahead: Outlook) -> list[tuple[str, Rows]]:
         ("nodes", f"about {_rounded(size.nodes)}, {within}"),
         (
             "unknowns",
-            f"about {_rounded(size.statics)} in step 1, {_rounded(size.vibration)} in step 2",
+            (f"about {_rounded(size.statics)} in step 1, " if size.statics else "about ")
+            + f"{_rounded(size.vibration)} in step 2",
         ),
         ("memory", f"about {cost.memory / 1e9:.2g} GB, within a factor {MEMORY_FACTOR:g}{free}"),
         (

@@ -37,7 +37,7 @@ def export(
     ] = None,
     msh: Annotated[
         Path | None,
-        typer.Option(help="Mesh of blade, film and water for gmsh.", metavar="FILE.msh"),
+        typer.Option(help="Mesh of the solid and the water for gmsh.", metavar="FILE.msh"),
     ] = None,
     csv: Annotated[
         Path | None,
@@ -63,7 +63,7 @@ def export(
     The fields of a run are VTU files already, in its folder fields/.
     """
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-    from quietblade.case import Case  # noqa: PLC0415  # help must stay fast
+    from quietblade.case import Case, load_case  # noqa: PLC0415  # help must stay fast
 
     run = source if source.is_dir() else None
     file = source if run is None else source / "case.toml"
@@ -92,7 +92,7 @@ def export(
     if msh is not None:
         from quietblade.study.export import export_msh  # noqa: PLC0415
 
-        export_msh(Case.load(file), msh)
+        export_msh(load_case(file), msh)
         add("msh", [msh], str(msh))
     equilibrium: dict[str, Any] = {}
     if out is not None or not written:

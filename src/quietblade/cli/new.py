@@ -19,7 +19,9 @@ def new(
     ] = None,
     preset: Annotated[
         str | None,
-        typer.Option(help="paper-aluminium (the default), paper-composite, hydrofoil or twisted."),
+        typer.Option(
+            help="paper-aluminium (the default), paper-composite, hydrofoil, twisted or sphere."
+        ),
     ] = None,
     ask: Annotated[
         bool, typer.Option("--ask", help="Ask for the main values; so does no NAME at a terminal.")

@@ -13,7 +13,7 @@ import typer
 from quietblade.case import Case, InvalidCaseError
 from quietblade.case.library import LAW_OF
 from quietblade.case.materials import BLADE_LAWS, FILM_LAWS
-from quietblade.case.presets import PRESETS, preset_text
+from quietblade.case.presets import BLADES, PRESETS, preset_text
 from quietblade.case.problems import Problem
 from quietblade.case.units import FREQUENCY, LENGTH, read_quantity
 from quietblade.case.writing import case_text
@@ -122,9 +122,10 @@ def ask_case(name: str | None, preset: str | None, *, force: bool) -> tuple[Path
     console.print("Enter keeps what stands in brackets. Units are yours: 250 mm, 8 deg, 60 rpm.")
     path = case_path(name, force=force) if name else _ask_path(force)
     if preset is None:
-        for known, about in PRESETS.items():
-            console.print(f"  {known}: {about}", markup=False)
-        preset = _ask_until("Start from", next(iter(PRESETS)), preset_text)
+        for known in BLADES:
+            console.print(f"  {known}: {PRESETS[known]}", markup=False)
+        preset = _ask_until("Start from", BLADES[0], _of_blade)
+    _of_blade(preset)
     start = tomllib.loads(preset_text(preset))
     data = deepcopy(start)
     data["title"] = path.stem
@@ -143,6 +144,13 @@ def ask_case(name: str | None, preset: str | None, *, force: bool) -> tuple[Path
     _fit_step(data, start)
     about = f'Written by "quietblade new" from answers, starting from the preset {preset}.'
     return path, _possible(data, about)
+
+
+def _of_blade(preset: str) -> str:
+    text = preset_text(preset)
+    if preset not in BLADES:
+        raise CaseError(f'the questions are about blades, and "{preset}" is none: leave out --ask')
+    return text
 
 
 def _possible(data: dict[str, Any], about: str) -> str:

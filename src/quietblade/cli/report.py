@@ -68,18 +68,18 @@ def report(
 
 def case_words(file: Path, run: "RunRecord") -> "tuple[tuple[Table, ...], tuple[Table, ...]]":
     """Say a run's case in words, as ``check`` does, or why that cannot be; and what to cite."""
-    from quietblade.case import Case, InvalidCaseError  # noqa: PLC0415
+    from quietblade.case import InvalidCaseError, load_case  # noqa: PLC0415
     from quietblade.case.changes import read_changes  # noqa: PLC0415
     from quietblade.cli.describe import case_tables  # noqa: PLC0415
     from quietblade.results.table import Table  # noqa: PLC0415
     from quietblade.study.citations import citation_table  # noqa: PLC0415
-    from quietblade.study.preflight import preflight  # noqa: PLC0415
+    from quietblade.study.examine import examine  # noqa: PLC0415
     from quietblade.study.run import run_key  # noqa: PLC0415
 
     try:
-        case = Case.load(file).varied(read_changes(run.case_text))
+        case = load_case(file).varied(read_changes(run.case_text))
         if run_key(case, run.code_version) == run.content_key:
-            told = case_tables(case, preflight(case))
+            told = case_tables(case, examine(case))
             words = tuple(Table(title, (), tuple(rows)) for title, rows in told)
             return words, (citation_table(case, run.code_version),)
         why = "it is not the case of this result; the text of the result's own is at the end"

@@ -46,14 +46,14 @@ def run(
     """
     # many small dense systems: threads of the BLAS would only fight with those of the solvers
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-    from quietblade.case import Case  # noqa: PLC0415  # help must stay fast
+    from quietblade.case import load_case  # noqa: PLC0415  # help must stay fast
     from quietblade.results.headline import summarise  # noqa: PLC0415
     from quietblade.results.store import RunFolder  # noqa: PLC0415
     from quietblade.results.tables import summary_tables  # noqa: PLC0415
     from quietblade.study.run import finished, run_case  # noqa: PLC0415
     from quietblade.view.figures import draw_figures  # noqa: PLC0415
 
-    words = Case.load(case)
+    words = load_case(case)
     folder = RunFolder(out or Path("runs") / case.stem)
     teller = error_console if as_json else console
     if not force and (result := finished(words, folder)) is not None:
@@ -73,6 +73,6 @@ def run(
         if not brief:
             summary = summarise(result)
             show_tables(summary.title, summary_tables(summary))
-        console.print(f"pictures: {folder.figures}\nfields:   {folder.static_fields.parent}")
+        console.print(f"pictures: {folder.figures}\nfields:   {folder.result.parent / 'fields'}")
         console.print(f"summary:  {folder.summary}\nresult:   {folder.result}")
-    return ExitCode.DONE if result.static.converged else ExitCode.NOT_CONVERGED
+    return ExitCode.DONE if result.converged else ExitCode.NOT_CONVERGED

@@ -4,7 +4,7 @@
 One layer of hexahedra in the film, pyramids on its faces, tetrahedra elsewhere.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 
@@ -16,7 +16,7 @@ from quietblade.geometry import Blade
 from quietblade.mesh.cad import Patch, Solids, build_solids
 from quietblade.mesh.cover import clear_size
 from quietblade.mesh.growth import GROWTH
-from quietblade.mesh.model import CellBlock, Mesh, patch_name
+from quietblade.mesh.model import CellBlock, Mesh, Quality, patch_name
 from quietblade.mesh.quality import poor_cell_notices, region_quality
 from quietblade.typing import FloatArray, IntArray
 
@@ -28,7 +28,7 @@ CELL_KINDS = {
 }
 TRIANGLE6 = 9
 
-_ATTEMPTS = (1.0, 0.98, 0.96, 0.94)
+ATTEMPTS = (1.0, 0.98, 0.96, 0.94)
 """Factors of the cell size that are tried: where the film's cover is thin, a cell that is flat or
 inverted is bad luck, which another size does not have. What gmsh refuses to mesh it refuses in any
 of these sizes."""
@@ -87,7 +87,7 @@ def build_mesh(blade: Blade, spec: MeshSpec) -> Mesh:
         except Exception as error:  # gmsh raises bare Exception
             raise _explained(error, spec) from error
         _embed_patches(solids)
-        for factor in _ATTEMPTS:
+        for factor in ATTEMPTS:
             gmsh.model.mesh.clear()
             try:
                 mesh = _mesh(blade, solids, replace(spec, size=factor * spec.size), centre)
@@ -143,7 +143,8 @@ def gmsh_session() -> Iterator[None]:
         gmsh.finalize()
 
 
-def _faces_of(volume: int) -> list[int]:
+def faces_of(volume: int) -> list[int]:
+    """Tags of the faces around one of gmsh's volumes."""
     return [tag for _, tag in gmsh.model.getBoundary([(3, volume)], oriented=False)]
 
 
@@ -152,7 +153,7 @@ def _set_film_layer(blade: Blade, solids: Solids, size: float) -> None:
     if solids.film is None or blade.film is None:
         return
     mesh = gmsh.model.mesh
-    faces = _faces_of(solids.film)
+    faces = faces_of(solids.film)
     if len(faces) != 6:
         raise MeshError(f"the film has {len(faces)} faces where a layer of hexahedra needs 6")
     s = np.linspace(*blade.film.span, 11)
@@ -176,8 +177,8 @@ def _set_film_layer(blade: Blade, solids: Solids, size: float) -> None:
 
 
 def _wetted_faces(solids: Solids) -> list[int]:
-    water = set(_faces_of(solids.water))
-    return [face for face in _faces_of(solids.blade) if face in water]
+    water = set(faces_of(solids.water))
+    return [face for face in faces_of(solids.blade) if face in water]
 
 
 def _set_sizes(blade: Blade, solids: Solids, spec: MeshSpec) -> None:
@@ -246,26 +247,55 @@ def _carries(face: int, curves: list[int]) -> bool:
     return True
 
 
-def _collect(blade: Blade, solids: Solids, spec: MeshSpec, centre: FloatArray) -> Mesh:
-    """Read the mesh out of gmsh, with nodes numbered from zero."""
+@dataclass(frozen=True)
+class Collected:
+    """What is read out of gmsh.
+
+    Attributes
+    ----------
+    nodes : (n, 3) float array
+        Positions [m], numbered from zero.
+    number : int array
+        Number of a node by gmsh's tag, -1 where it belongs to no cell.
+    cells, quality : mappings
+        By region, as in `Mesh`.
+    """
+
+    nodes: FloatArray
+    number: IntArray
+    cells: Mapping[str, tuple[CellBlock, ...]]
+    quality: Mapping[str, Quality]
+
+
+def collect_cells(volumes: Mapping[str, int]) -> Collected:
+    """Read the cells of gmsh's volumes, by the names of their regions.
+
+    Raises
+    ------
+    MeshError
+        A cell is inverted (with the place).
+    """
     tags, coordinates, _ = gmsh.model.mesh.getNodes()
     position = np.zeros((int(tags.max()) + 1, 3))
     position[tags] = coordinates.reshape(-1, 3)
-    raw = {name: _blocks(volume) for name, volume in solids.volumes().items()}
+    raw = {name: _blocks(volume) for name, volume in volumes.items()}
     used = np.unique(np.concatenate([c.ravel() for b in raw.values() for _, c in b]))
     number = np.full(len(position), -1, dtype=np.int64)
     number[used] = np.arange(len(used))
-    nodes = position[used]
     cells = {
         name: tuple(CellBlock(kind, number[nodes_]) for kind, nodes_ in blocks)
         for name, blocks in raw.items()
     }
-    quality = {
-        name: region_quality(name, volume, position) for name, volume in solids.volumes().items()
-    }
-    faces = _named_faces(blade, solids, spec.patches, nodes, number)
-    notices = poor_cell_notices(quality)
-    return Mesh(nodes, cells, faces, centre, spec.radius, quality, notices)
+    quality = {name: region_quality(name, volume, position) for name, volume in volumes.items()}
+    return Collected(position[used], number, cells, quality)
+
+
+def _collect(blade: Blade, solids: Solids, spec: MeshSpec, centre: FloatArray) -> Mesh:
+    """Read the mesh out of gmsh, with nodes numbered from zero."""
+    made = collect_cells(solids.volumes())
+    faces = _named_faces(blade, solids, spec.patches, made.nodes, made.number)
+    notices = poor_cell_notices(made.quality)
+    return Mesh(made.nodes, made.cells, faces, centre, spec.radius, made.quality, notices)
 
 
 def _blocks(volume: int) -> list[tuple[str, IntArray]]:
@@ -278,7 +308,8 @@ def _blocks(volume: int) -> list[tuple[str, IntArray]]:
     return blocks
 
 
-def _triangles(face: int, number: IntArray) -> IntArray:
+def surface_triangles(face: int, number: IntArray) -> IntArray:
+    """Six-node triangles (m, 6) of a face of gmsh's, by the numbers of `Collected`."""
     kinds, _, nodes = gmsh.model.mesh.getElements(2, face)
     if list(kinds) != [TRIANGLE6]:
         raise MeshError("a wetted face is not meshed by six-node triangles")
@@ -294,8 +325,8 @@ def _named_faces(
 ) -> dict[str, IntArray]:
     """Triangles of each boundary; which side they point to is left open."""
     wetted = _wetted_faces(solids)
-    outer = [face for face in _faces_of(solids.water) if face not in wetted]
-    triangles = np.concatenate([_triangles(face, number) for face in wetted])
+    outer = [face for face in faces_of(solids.water) if face not in wetted]
+    triangles = np.concatenate([surface_triangles(face, number) for face in wetted])
     at_root = np.abs(nodes[triangles, 2] - blade.hub_radius).max(axis=1) < 1e-9 * blade.span
     middle = nodes[triangles[:, 3:]].mean(axis=1)
     s, xi, eta = blade.locate(middle)
@@ -312,5 +343,5 @@ def _named_faces(
         "wet": triangles[rest],
         **{name: triangles[inside] for name, inside in excited.items()},
         "root": triangles[at_root],
-        "outer": np.concatenate([_triangles(face, number) for face in outer]),
+        "outer": np.concatenate([surface_triangles(face, number) for face in outer]),
     }

@@ -16,11 +16,11 @@ from quietblade.errors import Notice
 from quietblade.mesh.nodal import NodalBasis
 from quietblade.typing import FloatArray, IntArray
 
-REGIONS = ("blade", "film", "water")
+REGIONS = ("blade", "film", "body", "water")
 """Materials of the mesh."""
 
-BOUNDARIES = ("wet", "excited", "root", "outer")
-"""Boundaries: wetted blade, its excited patch, clamped root face, outer sphere."""
+BOUNDARIES = ("wet", "excited", "root", "inside", "outer")
+"""Boundaries: wetted surface, its excited patch, clamped root face, hollow, outer sphere."""
 
 EXCITED = r"excited\d*"
 """Name pattern of the excited patches: the first is "excited", then come "excited2" and so on."""

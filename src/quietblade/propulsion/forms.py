@@ -25,7 +25,7 @@ from quietblade.typing import BoolArray, FloatArray, IntArray
 Terms = Sequence[ngs.CoefficientFunction]
 """Integrals of a weak form (NGSolve ``SumOfIntegrals``)."""
 
-SOLID_REGIONS = ("blade", "film")
+SOLID_REGIONS = ("blade", "film", "body")
 
 # Pressure, cofactor and test function are each of second order on a straight face.
 _FOLLOWER_BONUS = 2

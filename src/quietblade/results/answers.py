@@ -2,6 +2,7 @@
 """The headline answers in words, in the order in which people ask."""
 
 from collections.abc import Iterable, Iterator, Mapping
+from itertools import groupby
 
 import numpy as np
 
@@ -24,15 +25,19 @@ _MISSING = "not computed"
 def answers(summary: Summary) -> Table:
     """Answer each question in one or two sentences."""
     texts = (_bend, _lift, _resonances, _loud, _power, _trust)
+    of_blades = () if summary.static is not None else (_bend, _lift)
     rows = tuple(
         (question, " ".join(text(summary)) or _MISSING)
         for question, text in zip(QUESTIONS, texts, strict=True)
+        if text not in of_blades
     )
     return Table("In short", (), rows)
 
 
 def _bend(summary: Summary) -> Iterator[str]:
     static = summary.static
+    if static is None:
+        return
     if not static.converged:
         yield "The equilibrium did NOT converge; these are figures of its last state."
     along = [1e3 * (np.nan if u is None else u) for u in static.tip_displacement_m]
@@ -41,14 +46,14 @@ def _bend(summary: Summary) -> Iterator[str]:
     yield f"and turns by {number(static.tip_blade_angle_deg, '+.2f')} deg."
     if static.max_film_shear_strain is not None:
         yield f"Largest shear strain of the film: {100 * static.max_film_shear_strain:.2f} %."
-    stress = summary.strength.von_mises_pa.get("blade")
+    stress = None if summary.strength is None else summary.strength.von_mises_pa.get("blade")
     if stress is not None:
         yield f"Largest von Mises stress in the blade: {1e-6 * stress:.4g} MPa."
 
 
 def _lift(summary: Summary) -> Iterator[str]:
     static, rotor = summary.static, summary.performance
-    if static.lift_n is None:
+    if static is None or rotor is None or static.lift_n is None:
         return
     yield f"Lift {static.lift_n:.1f} N"
     if static.lift_rigid_n:
@@ -68,7 +73,15 @@ def _resonances(summary: Summary) -> Iterator[str]:
 
 
 def _frequencies(modes: Iterable[ModeSummary]) -> str:
-    return ", ".join(f"{mode.name} {number(mode.frequency_hz, '.1f')}" for mode in modes)
+    """Frequencies by name; of modes that differ in their second number only, the mean."""
+    elastic = (mode for mode in modes if mode.kind != "rigid")
+    told = []
+    for stem, group in groupby(elastic, key=lambda mode: mode.name.partition(".")[0]):
+        known = [mode.frequency_hz for mode in group]
+        mean = np.mean([np.nan if f is None else f for f in known])
+        count = f" ({len(known)} modes)" if len(known) > 1 else ""
+        told.append(f"{stem} {number(float(mean), '.1f')}{count}")
+    return ", ".join(told)
 
 
 def _loud(summary: Summary) -> Iterator[str]:
@@ -121,11 +134,12 @@ def _shares(shares: Mapping[str, float | None]) -> str:
 
 def _trust(summary: Summary) -> Iterator[str]:
     static, balance, sound = summary.static, summary.balance, summary.sound_power
-    verdict = "converged" if static.converged else "did NOT converge"
-    yield (
-        f"Flow and structure {verdict}, with an estimated error of "
-        f"{number(static.estimated_error, '.0e')}."
-    )
+    if static is not None:
+        verdict = "converged" if static.converged else "did NOT converge"
+        yield (
+            f"Flow and structure {verdict}, with an estimated error of "
+            f"{number(static.estimated_error, '.0e')}."
+        )
     if balance.max_relative_residual is not None:
         yield f"The power balances to {balance.max_relative_residual:.0e};"
         yield (

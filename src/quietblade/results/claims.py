@@ -150,7 +150,7 @@ def _claim(
 
 
 def _static_claims(result: Result, blade: str) -> Iterator[Claim]:
-    static = result.static
+    static = result.steady
     paper, strain = 100 * _SHEAR_STRAIN[blade], 100 * static.max_film_shear_strain
     yield _claim(
         f"{blade}/film-shear-strain",
@@ -184,7 +184,7 @@ def _static_claims(result: Result, blade: str) -> Iterator[Claim]:
 
 
 def _camber(result: Result, blade: str) -> Claim:
-    sections, middle = result.static.sections, result.static.mid_section.span_fraction
+    sections, middle = result.steady.sections, result.steady.mid_section.span_fraction
     index = np.argmin(np.abs(sections.span_fraction - middle))
     camber = 100 * float(sections.camber[state("coupled"), index])
     visible = 100 * _VISIBLE_CAMBER
@@ -202,7 +202,7 @@ def _camber(result: Result, blade: str) -> Claim:
 
 def _twist(result: Result) -> tuple[FloatArray, FloatArray]:
     """Span fraction, and change of the blade angle from the rigid blade [deg]."""
-    sections = result.static.sections
+    sections = result.steady.sections
     change = sections.blade_angle[state("coupled")] - sections.blade_angle[state("rigid")]
     return sections.span_fraction, np.degrees(change)
 
@@ -236,7 +236,7 @@ def _composite_angle(result: Result) -> Claim:
 
 
 def _rigid_blade(result: Result, blade: str) -> Iterator[Claim]:
-    sections, rigid = result.static.sections, state("rigid")
+    sections, rigid = result.steady.sections, state("rigid")
     lift, alpha = sections.lift_coefficient[rigid], sections.incidence[rigid]
     slope = float(lift @ alpha / (alpha @ alpha)) / (2.0 * np.pi)
     yield _claim(
@@ -260,7 +260,7 @@ def _rigid_blade(result: Result, blade: str) -> Iterator[Claim]:
 
 
 def _mean_lift(result: Result, name: str) -> float:
-    sections = result.static.sections
+    sections = result.steady.sections
     chord, s = sections.chord[state("rigid")], sections.span_fraction
     lift = sections.lift_coefficient[state(name)]
     return float(np.trapezoid(lift * chord, s) / np.trapezoid(chord, s))

@@ -74,6 +74,8 @@ def comparison_table(differences: tuple[Difference, ...], names: tuple[str, str]
 
 def _static(first: Summary, second: Summary) -> Iterator[Difference]:
     a, b = first.static, second.static
+    if a is None or b is None:
+        return
     for axis, u, v in zip("xyz", a.tip_displacement_m, b.tip_displacement_m, strict=True):
         yield Difference(f"tip displacement {axis}", "m", u, v)
     yield Difference("blade angle at the tip", "deg", a.tip_blade_angle_deg, b.tip_blade_angle_deg)
@@ -88,7 +90,11 @@ def _static(first: Summary, second: Summary) -> Iterator[Difference]:
 
 
 def _modes(configuration: str, first: Summary, second: Summary) -> Iterator[Difference]:
-    a, b = ({m.name: m for m in getattr(s.modes, configuration)} for s in (first, second))
+    a, b = (
+        # rigid motions have the frequency zero, up to rounding
+        {m.name: m for m in getattr(s.modes, configuration) if m.kind != "rigid"}
+        for s in (first, second)
+    )
     references = [s.sound_power.level_reference for s in (first, second)]
     unit = f"dB re {references[0]}"
     alike = len(set(references)) == 1  # powers and their densities cannot be compared

@@ -5,6 +5,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import fields
 from io import BytesIO
 from pathlib import Path
+from types import UnionType
 from typing import Any, TypeVar, get_args, get_origin, get_type_hints
 
 import numpy as np
@@ -173,12 +174,26 @@ def _read(cls: type[AnyRecord], node: xr.DataTree) -> AnyRecord:
             member = get_args(hint)[1]
             present = [name for name in CONFIGURATIONS if name in node.children]
             values[field.name] = {name: _read(member, node.children[name]) for name in present}
-        elif issubclass(get_origin(hint) or hint, Record):
-            values[field.name] = _read(hint, _member(node.children, field.name, node.path))
+        elif type(None) in get_args(hint) and field.name not in node.children and _of_body(node):
+            values[field.name] = None  # step 1, which only a blade has
+        elif issubclass(_record_type(hint), Record):
+            values[field.name] = _read(
+                _record_type(hint), _member(node.children, field.name, node.path)
+            )
         else:
             variable = _member(node.variables, field.name, node.path)
             values[field.name] = _value(QUANTITIES[_key(node.path, field.name)], variable.values)
     return cls(**values)
+
+
+def _record_type(hint: Any) -> Any:
+    """Take the first of a type that may be None, and what a mapping is of."""
+    return get_args(hint)[0] if get_origin(hint) is UnionType else get_origin(hint) or hint
+
+
+def _of_body(node: xr.DataTree) -> bool:
+    """Whether the solid of a result is a body that is no blade, which has no step 1."""
+    return "body" in _member(node.children, "mesh", "")["cells"]["region"].values
 
 
 def _member(members: Mapping[Any, Any], name: str, path: str) -> Any:

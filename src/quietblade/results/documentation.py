@@ -71,6 +71,10 @@ def _fields(
 
 
 def _referred(member: Mapping[str, Any], schema: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Follow a reference, that of an object which may be null too."""
+    for option in member.get("anyOf", ()):
+        if "$ref" in option:
+            member = option
     if "$ref" not in member:
         return member
     found: Mapping[str, Any] = schema["$defs"][member["$ref"].rsplit("/", 1)[-1]]

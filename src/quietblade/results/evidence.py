@@ -13,8 +13,7 @@ def evidence_tables(result: Result) -> tuple[Table, ...]:
     tables = (
         _cells(result),
         _unknowns(result),
-        _passes(result),
-        _newton(result),
+        *(() if result.static is None else (_passes(result), _newton(result))),
         _sweeps(result),
         _solvers(result),
         _packages(result),
@@ -47,7 +46,7 @@ def _unknowns(result: Result) -> Table:
 
 
 def _passes(result: Result) -> Table:
-    static, history = result.static, result.static.history
+    static, history = result.steady, result.steady.history
     rows = tuple(
         (
             str(i + 1),
@@ -70,7 +69,7 @@ def _passes(result: Result) -> Table:
 
 def _newton(result: Result) -> Table:
     """One row a pass: Newton steps, and the residual where they ended."""
-    newton = result.static.newton
+    newton = result.steady.newton
     rows = []
     for number_of_pass in np.unique(newton.coupling_iteration):
         steps = np.flatnonzero(newton.coupling_iteration == number_of_pass)

@@ -61,7 +61,7 @@ def _wave_note(summary: Summary) -> str:
     place = "far away" if distance is None else f"at {distance:g} m"
     return (
         "shares of the radiated power; DI: largest squared pressure over its mean over all "
-        f"directions, {place}; direction of the largest pressure in the blade's axes"
+        f"directions, {place}; direction of the largest pressure in the axes of the case"
     )
 
 

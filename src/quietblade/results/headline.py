@@ -10,7 +10,7 @@ from quietblade.results.claims import judge_claims
 from quietblade.results.excitation_headline import excitation_summaries, transfer_summary
 from quietblade.results.far_headline import far_field_summary, limit_summaries
 from quietblade.results.mode_records import CampbellDiagram
-from quietblade.results.model import ConfigurationResult, Result, path, state
+from quietblade.results.model import ConfigurationResult, Result, StaticResult, path, state
 from quietblade.results.peaks import find_peaks
 from quietblade.results.summary import (
     BalanceSummary,
@@ -46,16 +46,16 @@ _SAME_PEAK = 1e-3
 
 def summarise(result: Result) -> Summary:
     """Headline figures of a result."""
-    configurations = result.configurations
+    configurations, static = result.configurations, result.static
     spectra = [c.spectrum for c in configurations.values()]
     timings = result.run.timings
     seconds = dict(zip(timings.stage, timings.seconds.tolist(), strict=True))
     return Summary(
         title=result.title,
         blade=result.blade,
-        static=_static(result),
-        performance=_performance(result),
-        strength=_strength(result),
+        static=None if static is None else _static(static),
+        performance=None if static is None else _performance(static),
+        strength=None if static is None else _strength(static),
         modes=ModesSummary(
             C0=_modes(configurations.get("C0")),
             C1=_modes(configurations.get("C1")),
@@ -90,15 +90,7 @@ def summarise(result: Result) -> Summary:
 
 def result_card(result: Result) -> Card:
     """Headline figures in a few lines, for a prompt or a notebook."""
-    static = result.static
-    rigid, coupled = (state(name) for name in ("rigid", "coupled"))
-    along = ", ".join(f"{1e3 * u:.2f}" for u in static.tip_displacement)
-    end = "converged" if static.converged else "NOT CONVERGED"
-    rows = [
-        ("tip displacement x, y, z", f"{along} mm ({end}, {static.coupling_kind})"),
-        ("lift", f"{static.lift[coupled]:.5g} N; rigid blade {static.lift[rigid]:.5g} N"),
-        ("largest shear strain of the film", f"{100.0 * static.max_film_shear_strain:.3f} %"),
-    ]
+    rows = [] if result.static is None else _steady_rows(result.static)
     for name, found in result.configurations.items():
         unit = "dB re 1 pW/Hz" if found.random else "dB re 1 pW"
         named = zip(found.modes.name, found.modes.frequency, strict=True)
@@ -114,8 +106,19 @@ def result_card(result: Result) -> Card:
     return Card(f"Result: {result.title or result.run.created}", shortened(rows))
 
 
-def _static(result: Result) -> StaticSummary:
-    static, sections = result.static, result.static.sections
+def _steady_rows(static: StaticResult) -> list[tuple[str, str]]:
+    rigid, coupled = (state(name) for name in ("rigid", "coupled"))
+    along = ", ".join(f"{1e3 * u:.2f}" for u in static.tip_displacement)
+    end = "converged" if static.converged else "NOT CONVERGED"
+    return [
+        ("tip displacement x, y, z", f"{along} mm ({end}, {static.coupling_kind})"),
+        ("lift", f"{static.lift[coupled]:.5g} N; rigid blade {static.lift[rigid]:.5g} N"),
+        ("largest shear strain of the film", f"{100.0 * static.max_film_shear_strain:.3f} %"),
+    ]
+
+
+def _static(static: StaticResult) -> StaticSummary:
+    sections = static.sections
     rigid, chained, coupled = (state(name) for name in ("rigid", "chained", "coupled"))
     middle = np.argmin(np.abs(sections.span_fraction - static.mid_section.span_fraction))
     twist = sections.blade_angle[coupled, -1] - sections.blade_angle[rigid, -1]
@@ -143,9 +146,8 @@ def _static(result: Result) -> StaticSummary:
     )
 
 
-def _strength(result: Result) -> StrengthSummary:
-    stress, failure = result.static.stress, result.static.failure
-    reaction = result.static.reaction
+def _strength(static: StaticResult) -> StrengthSummary:
+    stress, failure, reaction = static.stress, static.failure, static.reaction
 
     def by_region(values: FloatArray) -> dict[str, float]:
         return dict(zip(stress.region, values.tolist(), strict=True))
@@ -170,8 +172,8 @@ def _strength(result: Result) -> StrengthSummary:
     )
 
 
-def _performance(result: Result) -> PerformanceSummary:
-    figures = result.static.performance
+def _performance(static: StaticResult) -> PerformanceSummary:
+    figures = static.performance
 
     def of(name: str) -> StateFigures:
         row = state(name)

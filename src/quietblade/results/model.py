@@ -625,7 +625,7 @@ class RunRecord(Record):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Result(Record):
-    """A whole study of one blade.
+    """A whole study of one blade, or of another body.
 
     Attributes
     ----------
@@ -633,7 +633,8 @@ class Result(Record):
         Title of the case.
     blade : str
         ``aluminium`` or ``composite`` if the case stands for one of the paper's blades, or empty.
-    static : StaticResult
+    static : StaticResult or None
+        None of a body that is no blade: it has no step 1.
     configurations : mapping
         `ConfigurationResult` by name, C0 and C1 or those that were computed, with the
         frequencies of the spectra in common.
@@ -646,12 +647,30 @@ class Result(Record):
     group: ClassVar[str] = ""
     title: str
     blade: str
-    static: StaticResult
+    static: StaticResult | None
     configurations: Mapping[str, ConfigurationResult]
     moduli: ModulusTable
     mesh: MeshResult
     run: RunRecord
     campbell: CampbellDiagram = field(default_factory=CampbellDiagram.none)
+
+    @property
+    def steady(self) -> StaticResult:
+        """Step 1 of a blade.
+
+        Raises
+        ------
+        ValueError
+            The result is of another body.
+        """
+        if self.static is None:
+            raise ValueError("a body that is no blade has no steady load: its `static` is None")
+        return self.static
+
+    @property
+    def converged(self) -> bool:
+        """Whether step 1 converged, where there is one."""
+        return self.static is None or self.static.converged
 
     def card(self) -> Card:
         """Headline figures."""
@@ -667,6 +686,8 @@ class Result(Record):
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        if self.static is None and "C1" in self.configurations:
+            raise ValueError("C1 is the state under a steady load, and there is no such load")
         unknown = set(self.configurations) - set(CONFIGURATIONS)
         if unknown:
             raise ValueError(f"configurations {sorted(unknown)}; there are {CONFIGURATIONS}")

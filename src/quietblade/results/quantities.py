@@ -446,7 +446,8 @@ _GROUPS: dict[str, tuple[Quantity, ...]] = {
            "area of the first load, if it is a pressure, else NaN"),
     ),
     "C*/modes": (
-        _text("name", "mode", "family (B bending, T torsion, E edgewise, C camber) and number"),
+        _text("name", "mode", "family (B bending, T torsion, E edgewise, C camber) and number; of "
+              "a sphere n or t (twisting) with the degree, or rigid, and a second number"),
         _q("frequency", "f_n", "Hz", "mode", "natural frequency in the water",
            "undamped, incompressible water, static exterior"),
         _q("loss_factor", "eta_n", "1", "mode",
@@ -465,14 +466,16 @@ _GROUPS: dict[str, tuple[Quantity, ...]] = {
         _count("counted", "m", "", "modes below the highest frequency by Sturm's count; every one "
                "of them was found"),
         _q("highest", "", "Hz", "", "frequency below which no mode is missing"),
-        _text("character", "mode", "bending, torsion, edgewise, chordwise; mixed where the family "
-              "of the name has less than 0.6 of the kinetic energy"),
-        _q("family_share", "", "1", "mode family", "share of the kinetic energy in each family"),
+        _text("character", "mode", "bending, torsion, edgewise, chordwise, of a sphere degree or "
+              "torsion with the degree, or rigid; mixed where the family of the name has less than "
+              "0.6 of the kinetic energy"),
+        _q("family_share", "", "1", "mode family",
+           "share of the kinetic energy in each family; NaN of a body that is no blade"),
         _q("residual", "", "1", "mode", "relative residual of the real mode",
            "||(K - s B) x|| / ||s B x||"),
     ),
     "C*/loss_shares": (
-        _text("name", "lossy", "region of the blade, stream, or radiation"),
+        _text("name", "lossy", "region of the solid, stream, or radiation"),
         _q("share", "eta_n,r", "1", "mode lossy",
            "what it adds to the loss factor; outside the band of the real mode, without radiation",
            "eta_n P_r / sum P"),

@@ -59,6 +59,11 @@ class RunFolder:
         """Solid in C0 with displacement, film shear strain and pressure."""
         return self.root / "fields" / "static.vtu"
 
+    @property
+    def mesh_fields(self) -> Path:
+        """Solid of a body that is no blade, which has no steady load, and its excited parts."""
+        return self.root / "fields" / "mesh.vtu"
+
     def mode_fields(self, configuration: str) -> Path:
         """Solid in one configuration with its wet mode shapes."""
         return self.root / "fields" / f"modes-{configuration}.vtu"

@@ -69,6 +69,8 @@ def _number(value: float | None) -> float:
 
 def _static(summary: Summary) -> Iterator[Figure]:
     static = summary.static
+    if static is None:
+        return
     for axis, value in zip("xyz", static.tip_displacement_m, strict=True):
         name = f"tip_displacement_{axis}"
         yield Figure(name, _number(value), "m", f"displacement of the tip along {axis}")
@@ -102,7 +104,8 @@ def _modes(summary: Summary) -> Iterator[Figure]:
     loaded = {mode.name: mode for mode in summary.modes.C1}
     for name, modes in (("C0", summary.modes.C0), ("C1", summary.modes.C1)):
         for mode in modes:
-            yield from _mode(name, mode)
+            if mode.kind != "rigid":  # their frequency is zero up to rounding
+                yield from _mode(name, mode)
     for mode in summary.modes.C0:
         partner = loaded.get(mode.partner)
         if partner is None:

@@ -385,9 +385,9 @@ class Summary(_Part):
 
     title: str = _of("title")
     blade: str = _of("blade")
-    static: StaticSummary
-    performance: PerformanceSummary
-    strength: StrengthSummary
+    static: StaticSummary | None = Field(description="null of a body that is no blade")
+    performance: PerformanceSummary | None = Field(description="null of a body that is no blade")
+    strength: StrengthSummary | None = Field(description="null of a body that is no blade")
     modes: ModesSummary
     campbell: CampbellSummary
     sound_power: SoundPowerSummary

@@ -5,16 +5,20 @@ from collections.abc import Iterable, Iterator, Mapping
 
 from quietblade.results.excitation_tables import excitation_table, transfer_table
 from quietblade.results.far_tables import far_field_tables
-from quietblade.results.summary import ModeSummary, Summary
+from quietblade.results.summary import (
+    ModeSummary,
+    PerformanceSummary,
+    StaticSummary,
+    StrengthSummary,
+    Summary,
+)
 from quietblade.results.table import Table, number
 
 
 def summary_tables(summary: Summary) -> tuple[Table, ...]:
     """Headline tables in the order in which people ask."""
     tables = [
-        _static(summary),
-        _performance(summary),
-        _strength(summary),
+        *_steady(summary),
         _modes(summary),
         *far_field_tables(summary),
         _kinds(summary),
@@ -50,8 +54,17 @@ def verdict(agrees: bool | None) -> str:
     return {True: "agrees", False: "DIFFERS", None: "not judged"}[agrees]
 
 
-def _static(summary: Summary) -> Table:
-    static = summary.static
+def _steady(summary: Summary) -> Iterator[Table]:
+    """Step 1, which only blades have."""
+    if summary.static is not None:
+        yield _static(summary.static)
+    if summary.performance is not None:
+        yield _performance(summary.performance)
+    if summary.strength is not None:
+        yield _strength(summary.strength)
+
+
+def _static(static: StaticSummary) -> Table:
     along = ", ".join(number(_times(1e3, u), "z.1f") for u in static.tip_displacement_m)
     place = ", ".join(number(u, ".3f") for u in static.max_film_shear_strain_place_m)
     gain = _change(static.lift_n, static.lift_rigid_n)
@@ -84,8 +97,7 @@ def _static(summary: Summary) -> Table:
     )  # fmt: skip
 
 
-def _performance(summary: Summary) -> Table:
-    figures = summary.performance
+def _performance(figures: PerformanceSummary) -> Table:
     states = (figures.rigid, figures.chained, figures.coupled)
     rows = [
         (name, *(number(getattr(state, key), form) for state in states), definition)
@@ -110,8 +122,7 @@ def _performance(summary: Summary) -> Table:
     return Table("Performance", heads, tuple(rows), note)
 
 
-def _strength(summary: Summary) -> Table:
-    strength = summary.strength
+def _strength(strength: StrengthSummary) -> Table:
     rows = [
         (f"Von Mises stress, {region}",
          f"{number(_times(1e-6, value))} MPa; 99 % of the volume below "
@@ -161,8 +172,8 @@ def _mode_row(rest: ModeSummary | None, loaded: ModeSummary | None) -> tuple[str
     before, after = (m.frequency_hz if m else None for m in (rest, loaded))
     return (
         " / ".join(dict.fromkeys(names)),
-        number(before, ".2f"),
-        number(after, ".2f"),
+        number(before, "z.2f"),
+        number(after, "z.2f"),
         _change(after, before),
         *(number(m.loss_factor if m else None, ".2e") for m in (rest, loaded)),
         number(rest.partner_mac if rest and loaded else None, ".3f"),
@@ -184,7 +195,7 @@ def _kinds(summary: Summary) -> Table:
             mode.name,
             mode.kind,
             number(mode.purity, ".2f"),
-            number(mode.frequency_hz, ".2f"),
+            number(mode.frequency_hz, "z.2f"),
             *([number(mode.dry_frequency_hz, ".2f")] if dry else []),
             number(mode.loss_factor, ".2e"),
             *(number(mode.loss_by_part.get(part), ".1e") for part in parts),

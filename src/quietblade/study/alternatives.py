@@ -13,19 +13,14 @@ from quietblade.mesh.motion import MeshMotion, solve_mesh_motion
 from quietblade.results.alternatives import AlternativeTable
 from quietblade.results.peaks import assign_peaks
 from quietblade.study import translate
+from quietblade.study.blade_vibration import solve_vibration
 from quietblade.study.mode_tables import carried
 from quietblade.study.outcome import peak_table
 from quietblade.study.preflight import preflight
 from quietblade.study.run import run_key
 from quietblade.study.sound import Sound, solve_sound
 from quietblade.study.statics import Statics, solve_statics
-from quietblade.study.vibration import (
-    Share,
-    Vibration,
-    frequencies,
-    solve_vibration,
-    symmetric_solver,
-)
+from quietblade.study.vibration import Share, Vibration, frequencies, symmetric_solver
 from quietblade.typing import FloatArray, Progress, silent
 from quietblade.vibroacoustics.bands import band_mean
 from quietblade.vibroacoustics.matching import Match, Product, match, wet_mass

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from quietblade.case import Case
+from quietblade.case import AnyCase, Case
 from quietblade.errors import Notice
 from quietblade.flow import limits
 from quietblade.flow.cavitation import cavitation_number, suction
@@ -101,17 +101,40 @@ def assumptions(case: Case, flow: BladeFlow, clearance: float) -> tuple[Assumpti
         _attached(case, flow),
         _dry(case, flow),
         *_inflow(case, flow),
-        Assumption(
-            "the sphere is clear of the blade",
-            f"{1e3 * clearance:.4g} mm at rest against {1e3 * case.acoustics.gap:.4g} mm, which "
-            "the deformed blade must keep too",
-            clearance,
-            case.acoustics.gap,
-        ),
-        Assumption(
-            "vibration and sound are small",
-            "linear about the loaded blade: powers grow with the square of the excitation",
-        ),
+        _clear(case, clearance, "blade", ", which the deformed blade must keep too"),
+        _linear("the loaded blade"),
+    )
+
+
+def body_assumptions(case: AnyCase, clearance: float) -> tuple[Assumption, ...]:
+    """Say what the assumptions come to of a body at rest.
+
+    Parameters
+    ----------
+    case : AnyCase
+    clearance : float
+        Least distance of the body from the sphere [m].
+    """
+    return (
+        Assumption("the water is unbounded and at rest", "no surface, no bottom, no stream"),
+        _clear(case, clearance, "body"),
+        _linear("the body at rest, without pressure or weight"),
+    )
+
+
+def _clear(case: AnyCase, clearance: float, what: str, more: str = "") -> Assumption:
+    return Assumption(
+        f"the sphere is clear of the {what}",
+        f"{1e3 * clearance:.4g} mm at rest against {1e3 * case.acoustics.gap:.4g} mm{more}",
+        clearance,
+        case.acoustics.gap,
+    )
+
+
+def _linear(about: str) -> Assumption:
+    return Assumption(
+        "vibration and sound are small",
+        f"linear about {about}: powers grow with the square of the excitation",
     )
 
 

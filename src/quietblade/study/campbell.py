@@ -16,14 +16,12 @@ from quietblade.mesh.motion import solve_mesh_motion
 from quietblade.propulsion.linear import newton_solver
 from quietblade.propulsion.structure import EquilibriumError
 from quietblade.results import mode_records as records
+from quietblade.study.blade_vibration import coriolis, displacement_field, linear_problem
 from quietblade.study.frames import SectionFrames
 from quietblade.study.statics import solve_equilibrium
 from quietblade.study.vibration import (
     ABOVE_BAND,
     SolidMatrices,
-    coriolis,
-    displacement_field,
-    linear_problem,
     nodal_masses,
     nodal_shapes,
     symmetric_solver,

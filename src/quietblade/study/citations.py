@@ -4,7 +4,7 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from quietblade.case import Case
+from quietblade.case import AnyCase, Case
 from quietblade.case.laminate import LaminateWords
 from quietblade.case.library import SOURCE_OF
 from quietblade.case.materials import AnisotropicWords, OrthotropicWords
@@ -58,7 +58,7 @@ class Citation:
     reference: Reference | None = None
 
 
-def citations(case: Case) -> tuple[Citation, ...]:
+def citations(case: AnyCase) -> tuple[Citation, ...]:
     """Return what to cite for a case, each source once, the two-step paper first."""
     reasons: dict[str, list[str]] = {}
     for why, keys in _used(case):
@@ -81,19 +81,20 @@ def program(version: str) -> str:
     return f"The quietblade developers. quietblade {version}: flexible propeller blades in water"
 
 
-def citation_table(case: Case, version: str) -> Table:
+def citation_table(case: AnyCase, version: str) -> Table:
     """Tabulate the program of a version and the `citations` of a case."""
     rows = [("program", program(version)), *((c.why, c.text) for c in citations(case))]
     note = "quietblade cite --bibtex writes these as a bibliography"
     return Table("What to cite", ("For", "Source"), tuple(rows), note)
 
 
-def _used(case: Case) -> Iterator[tuple[str, tuple[str, ...]]]:
+def _used(case: AnyCase) -> Iterator[tuple[str, tuple[str, ...]]]:
     """Say what a case uses, with the keys of the sources."""
     yield "two-step method", ("TwoStep",)
     yield "finite elements", ("Schoeberl2014",)
     yield "mesh", ("Geuzaine2009",)
-    yield from _step_1(case)
+    if isinstance(case, Case):
+        yield from _step_1(case)
     yield from _step_2(case)
 
 
@@ -122,13 +123,13 @@ def _step_1(case: Case) -> Iterator[tuple[str, tuple[str, ...]]]:
         yield f"coupling accelerated by {case.static.method}", (_COUPLING[case.static.method],)
 
 
-def _step_2(case: Case) -> Iterator[tuple[str, tuple[str, ...]]]:
+def _step_2(case: AnyCase) -> Iterator[tuple[str, tuple[str, ...]]]:
     acoustics = case.acoustics
     if "C1" in acoustics.configurations:
         yield "motion of the water's mesh", ("Boncoraglio2021",)
     if set(acoustics.configurations) == {"C0", "C1"}:
         yield "modes of C0 and C1 side by side", ("Allemang1982",)
-    yield "blade and water, symmetric form", ("Everstine1981",)
+    yield f"{case.parts[0]} and water, symmetric form", ("Everstine1981",)
     yield f"radiation condition {acoustics.radiation}", _RADIATION[acoustics.radiation]
     yield "complex modes", ("Neumaier1985",)
     if acoustics.sweep == "reduced":
@@ -143,8 +144,8 @@ def _step_2(case: Case) -> Iterator[tuple[str, tuple[str, ...]]]:
     yield from _losses(case)
 
 
-def _losses(case: Case) -> Iterator[tuple[str, tuple[str, ...]]]:
-    for part in ("blade", "film") if case.film is not None else ("blade",):
+def _losses(case: AnyCase) -> Iterator[tuple[str, tuple[str, ...]]]:
+    for part in case.parts:
         loss = getattr(case.material(part), "loss_factor", None)
         model = getattr(loss, "model", None)
         if model in _LOSS:

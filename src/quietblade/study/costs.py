@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from quietblade.case import Case
+from quietblade.case import AnyCase, Case
 from quietblade.geometry import Blade
 from quietblade.linalg import default_threads
 from quietblade.study import translate
@@ -66,13 +66,14 @@ class Cost:
         return sum(self.seconds.values())
 
 
-def estimate(case: Case, blade: Blade, size: Size, trial: float) -> Cost:
+def estimate(case: AnyCase, blade: Blade | None, size: Size, trial: float) -> Cost:
     """Estimate memory and time.
 
     Parameters
     ----------
-    case : Case
-    blade : Blade
+    case : AnyCase
+    blade : Blade or None
+        None for another body.
     size : Size
         Of the systems.
     trial : float
@@ -90,7 +91,7 @@ def estimate(case: Case, blade: Blade, size: Size, trial: float) -> Cost:
     )
 
 
-def _stages(case: Case, blade: Blade, size: Size) -> dict[str, float]:
+def _stages(case: AnyCase, blade: Blade | None, size: Size) -> dict[str, float]:
     """Time of each stage on the machine of the constants [s], in their order."""
     n, acoustics = size.vibration, case.acoustics
     factor = _FACTOR * n**_FACTOR_POWER
@@ -101,17 +102,16 @@ def _stages(case: Case, blade: Blade, size: Size) -> dict[str, float]:
         modes -= factor  # no reduced model is made
         frequencies = len(translate.base_frequencies(case)) + _MODES * acoustics.points_per_mode
         sweep = frequencies * factor
-    found = {
-        "mesh": _MESH * size.nodes + (0.0 if _ruled(blade) else _LOFT),
-        "flow and structure": statics,
-    }
+    found = {"mesh": _MESH * size.nodes + (0.0 if blade is None or _ruled(blade) else _LOFT)}
+    if blade is not None:
+        found["flow and structure"] = statics
     if "C1" in acoustics.configurations:
         found["mesh motion"] = motion
     found |= {f"modes {name}": modes for name in acoustics.configurations}
     found |= {f"sweep {name}": sweep for name in acoustics.configurations}
     dry = 0.5 * modes * len(acoustics.configurations) if acoustics.dry_modes else 0.0
     found["mode tables"] = _TABLES * n + dry
-    if case.campbell is not None:
+    if isinstance(case, Case) and case.campbell is not None:
         each = statics + motion + _ASSEMBLY * n + factor
         found["Campbell diagram"] = len(case.campbell.speeds) * each
     return found | {"files": _FILES * size.nodes}

@@ -5,8 +5,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from quietblade.case import Case
-from quietblade.case.excitation import PatchWords
+from quietblade.case import AnyCase
+from quietblade.case.excitation import PressureWords
 from quietblade.results.excitations import ExcitationTable, TransferTable
 from quietblade.study.excitations import Excited
 from quietblade.study.sound import Sound
@@ -71,10 +71,10 @@ def transfer_table(transfer: Transfer | None) -> TransferTable:
     )
 
 
-def first_pressure(case: Case) -> float:
+def first_pressure(case: AnyCase) -> float:
     """Constant amplitude of the first load if it is a harmonic pressure, else nan [Pa]."""
     words = case.excitation[0]
-    if not isinstance(words, PatchWords) or words.table or case.acoustics.signal == "random":
+    if not isinstance(words, PressureWords) or words.table or case.acoustics.signal == "random":
         return float("nan")
     return 1.0 if words.pressure is None else words.pressure
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from quietblade.case import Case
 from quietblade.case.excitation import (
-    AnyExcitationWords,
+    ExcitationWords,
     LinePushWords,
     PatchWords,
     PushWords,
@@ -207,7 +207,7 @@ def excite(
     random, patches = case.acoustics.signal == "random", 0
     drives = []
     for number, (words, name) in enumerate(zip(case.excitation, names(case), strict=True)):
-        amplitude = tables.get(number, _constant(words))
+        amplitude = tables.get(number, constant_amplitude(words))
         unit = words.density_unit if random else words.unit
         if isinstance(words, RootMotionWords):
             assert root is not None  # needs_root
@@ -220,7 +220,7 @@ def excite(
             surface = patch_name(patches)
             patches += 1
             force = pressure_force(mesh.fem, 1.0, surface=surface, motion=motion)
-            size = _area(mesh, positions, surface)
+            size = patch_area(mesh, positions, surface)
         else:
             force, size = _push(words, blade, mesh)
         vector = (operators if root is None else root).right_hand_side(force)
@@ -234,7 +234,8 @@ def excite(
     return Excited(tuple(drives), correlation, root, probes, case.acoustics.band)
 
 
-def _constant(words: AnyExcitationWords) -> complex:
+def constant_amplitude(words: ExcitationWords) -> complex:
+    """Amplitude or density of a load that has no table."""
     if words.density_value is not None:
         return words.density_value
     value = words.amplitude_value
@@ -254,7 +255,8 @@ def _push(words: PushWords | LinePushWords, blade: Blade, mesh: Mesh) -> tuple[F
     return line_force(mesh.basis, surface, places, direction), length
 
 
-def _area(mesh: Mesh, positions: FloatArray, name: str) -> float:
+def patch_area(mesh: Mesh, positions: FloatArray, name: str) -> float:
+    """Area of a boundary whose nodes are at these positions [m2]."""
     surface = SurfaceQuadrature(mesh.nodes, mesh.faces[name])
     return float(np.linalg.norm(surface.area_vectors(positions), axis=-1).sum())
 

@@ -5,15 +5,18 @@ from pathlib import Path
 
 import ngsolve as ngs
 
-from quietblade.case import Case
+from quietblade.case import AnyCase, BodyCase, Case
 from quietblade.linalg import default_threads
 from quietblade.mesh import build_mesh
 from quietblade.mesh.exchange import write_msh, write_step
+from quietblade.mesh.shell import build_shell
 from quietblade.propulsion.deck import write_deck
 from quietblade.results.files import replacing
 from quietblade.study import translate
+from quietblade.study.body import shell_spec
 from quietblade.study.clock import Clock
-from quietblade.study.preflight import preflight
+from quietblade.study.examine import examine
+from quietblade.study.preflight import Preflight, preflight
 from quietblade.study.statics import Statics, solve_statics
 from quietblade.typing import Progress, silent
 
@@ -68,7 +71,7 @@ def export_step(case: Case, file: Path) -> None:
         write_step(blade, temporary)
 
 
-def export_msh(case: Case, file: Path) -> None:
+def export_msh(case: AnyCase, file: Path) -> None:
     """Write the mesh of a case in gmsh's format, in metres.
 
     Raises
@@ -78,6 +81,11 @@ def export_msh(case: Case, file: Path) -> None:
     MeshError
         The mesh cannot be made or written.
     """
-    mesh = build_mesh(preflight(case).blade, translate.mesh_spec(case))
+    known = examine(case)
+    if isinstance(known, Preflight) and isinstance(case, Case):
+        mesh = build_mesh(known.blade, translate.mesh_spec(case))
+    else:
+        assert isinstance(case, BodyCase)
+        mesh = build_shell(shell_spec(case))
     with replacing(file) as temporary:
         write_msh(mesh, temporary)

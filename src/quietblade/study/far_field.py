@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from quietblade.case import Case
+from quietblade.case import AnyCase
 from quietblade.errors import Notice
 from quietblade.study.vibration import Vibration
 from quietblade.typing import AnyArray, ComplexArray, FloatArray
@@ -114,7 +114,7 @@ class FarField:
 
 
 def solve_far_field(
-    case: Case, vibration: Vibration, spectrum: Samples, patterns: Samples, peaks: int
+    case: AnyCase, vibration: Vibration, spectrum: Samples, patterns: Samples, peaks: int
 ) -> FarField:
     """Find the sound outside.
 
@@ -215,7 +215,7 @@ def _pressure(samples: Samples, outside: Outside, points: FloatArray) -> Complex
     return pressure
 
 
-def _near_points(case: Case, vibration: Vibration, points: FloatArray) -> list[Notice]:
+def _near_points(case: AnyCase, vibration: Vibration, points: FloatArray) -> list[Notice]:
     """Say which points the blade of this configuration comes too close to."""
     surface, least = vibration.sources.points, case.mesh.size
     found = []

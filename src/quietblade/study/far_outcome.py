@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from quietblade.case import Case
+from quietblade.case import AnyCase
 from quietblade.results import model
 from quietblade.study.far_field import FarField, Outside, together
 from quietblade.study.limits import bands_of, limits
@@ -25,7 +25,7 @@ _NORMALS = {"xy": (0.0, 0.0, 1.0), "xz": (0.0, -1.0, 0.0), "yz": (1.0, 0.0, 0.0)
 _STARTS = {"xy": (1.0, 0.0, 0.0), "xz": (1.0, 0.0, 0.0), "yz": (0.0, 1.0, 0.0)}
 
 
-def band_table(case: Case, sound: Sound) -> model.BandTable:
+def band_table(case: AnyCase, sound: Sound) -> model.BandTable:
     """Mean power in the bands that the frequencies cover, and over all frequencies."""
     frequency, through, leaving = _solved(sound)
     bands = _whole(case.bands.kind, frequency)
@@ -59,7 +59,7 @@ def far_field_result(radius: float, far: FarField) -> model.FarFieldResult:
     )
 
 
-def directivity_result(case: Case, far: FarField) -> model.DirectivityResult:
+def directivity_result(case: AnyCase, far: FarField) -> model.DirectivityResult:
     """Polar diagrams and sphere of directions at the peaks and the frequencies of the case."""
     waves, words = far.patterns.waves, case.far_field
     distance = np.inf if words.distance is None else words.distance
@@ -106,7 +106,7 @@ def _directed(
     return together([each.product for each in found]), mean
 
 
-def limit_table(case: Case, sound: Sound) -> model.LimitTable:
+def limit_table(case: AnyCase, sound: Sound) -> model.LimitTable:
     """Hold the levels against each limit, the peaks of the reduced model included."""
     held = limits(case)
     rows = [

@@ -26,11 +26,21 @@ def write_static_fields(mesh: Mesh, statics: Statics, folder: RunFolder) -> None
     ]
     for region in statics.stress.regions.values():
         fields += _stress_fields(region, len(mesh.nodes))
+    write_fields(folder.static_fields, mesh.nodes, _with_excited(mesh), fields)
+
+
+def write_mesh_fields(mesh: Mesh, folder: RunFolder) -> None:
+    """Cells of a solid that bears no steady load."""
+    write_fields(folder.mesh_fields, mesh.nodes, _with_excited(mesh), [])
+
+
+def _with_excited(mesh: Mesh) -> dict[str, tuple[CellBlock, ...]]:
+    """Cells of the solid, and the triangles of its excited parts."""
     cells = {name: blocks for name, blocks in mesh.cells.items() if name != "water"}
     excited = [faces for name, faces in mesh.faces.items() if re.fullmatch(EXCITED, name)]
     if excited:
         cells["excited"] = (CellBlock("triangle6", np.concatenate(excited)),)
-    write_fields(folder.static_fields, mesh.nodes, cells, fields)
+    return cells
 
 
 def _stress_fields(region: RegionStress, count: int) -> list[PointField]:
@@ -113,7 +123,7 @@ def _nodes_in(mesh: Mesh, *regions: str) -> np.ndarray[tuple[int], np.dtype[np.b
 
 
 def _solid(mesh: Mesh) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
-    return _nodes_in(mesh, "blade", "film")
+    return _nodes_in(mesh, "blade", "film", "body")
 
 
 def _on_solid(mesh: Mesh, shape: ComplexArray) -> ComplexArray:

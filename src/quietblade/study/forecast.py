@@ -6,6 +6,7 @@ over h^2.  The proportions were fitted to meshes of `quietblade.mesh.build`;
 ``tests/study/test_forecast.py`` holds them against a mesh, and against the sizes of others.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -29,6 +30,8 @@ _THICK_PER_SURFACE = 2.5
 _PER_FILM_CELL = 25.0
 _PER_FILM_RIM = 28.0
 _WETTED_PER_SURFACE = 4.8
+_PER_LAYER, _PER_DEPTH, _LAYERS = 11.5, 3.8, (15.0, 19.0)
+_AROUND_SHELL = 0.9
 
 _NEAR = 1.5
 """Layer around the blade, in sizes of its cells, whose volume follows from the surface."""
@@ -45,7 +48,7 @@ class Size:
     nodes : int
         Of solid and water.
     statics, vibration : int
-        Unknowns of step 1 and of step 2.
+        Unknowns of step 1, 0 without one, and of step 2.
     """
 
     nodes: int
@@ -85,6 +88,52 @@ def forecast(
     return Size(round(solid + water - wetted), round(statics), round(statics + water))
 
 
+def forecast_shell(
+    outer: float,
+    thickness: float,
+    size: float,
+    centre: FloatArray,
+    radius: float,
+    water_size: float,
+) -> Size:
+    """Estimate nodes and unknowns of a spherical shell about the origin, in a sphere of water.
+
+    Parameters
+    ----------
+    outer, thickness : float
+        Outer radius of the wall, and its thickness [m].
+    size, centre, radius, water_size
+        As of `forecast`.
+    """
+    inner = outer - thickness
+    surface = 4.0 * np.pi * outer**2
+    volume = 4.0 / 3.0 * np.pi * (outer**3 - inner**3)
+    # a layer of cells however thin the wall is; inside a thick one they grow
+    each = float(np.clip(_PER_LAYER + _PER_DEPTH * thickness / size, *_LAYERS))
+    solid = each * volume / thickness / size**2
+    density = _density(size, water_size)
+    far = radius + float(np.linalg.norm(centre))
+    r = np.linspace(outer, far, 4001)
+    shell = float(np.trapezoid(density(r - outer) * 4.0 * np.pi * r**2, r))
+    inside = 4.0 * np.pi * (far**3 - outer**3) / 3.0
+    water = _AROUND_SHELL * shell * 4.0 * np.pi * (radius**3 - outer**3) / 3.0 / inside
+    water += _OUTER * 4.0 * np.pi * (radius / water_size) ** 2
+    wetted = _WETTED_PER_SURFACE * surface / size**2
+    return Size(round(solid + water - wetted), 0, round(3.0 * solid + water))
+
+
+def _density(size: float, water_size: float) -> Callable[[FloatArray], FloatArray]:
+    """Nodes of the water by its volume, at a distance from the body: of cells that grow."""
+
+    def density(distance: FloatArray) -> FloatArray:
+        h = np.maximum(size + GROWTH * (distance - 0.5 * size), size)
+        graded = h < water_size
+        nodes = np.where(graded, _GRADED, _UNIFORM) / np.minimum(h, water_size) ** 3
+        return np.asarray(nodes, dtype=np.float64)
+
+    return density
+
+
 def _surface(points: FloatArray) -> float:
     """Area of both faces [m^2]."""
     across, along = np.diff(points[:-1], axis=1), np.diff(points[:, :-1], axis=0)
@@ -110,13 +159,7 @@ def _water(
 
     Where the size grows, cells are smaller than they are asked to be.
     """
-
-    def density(distance: FloatArray) -> FloatArray:
-        h = np.maximum(size + GROWTH * (distance - 0.5 * size), size)
-        graded = h < water_size
-        nodes = np.where(graded, _GRADED, _UNIFORM) / np.minimum(h, water_size) ** 3
-        return np.asarray(nodes, dtype=np.float64)
-
+    density = _density(size, water_size)
     layer = np.linspace(0.0, _NEAR * size, 101)
     near = surface * float(np.trapezoid(density(layer), layer))
     u = qmc.Sobol(3, seed=0).random_base2(_SAMPLES)

@@ -5,16 +5,16 @@ from collections.abc import Mapping
 from itertools import chain
 from types import MappingProxyType
 
-from quietblade.case import Case
-from quietblade.case.presets import PRESETS, preset_text
+from quietblade.case import AnyCase, Case
+from quietblade.case.presets import BLADES, preset_text
 from quietblade.errors import Notice
 from quietblade.mesh import Mesh
 from quietblade.results import mode_records as records
-from quietblade.results.model import Result
+from quietblade.results.model import Result, StaticResult
 from quietblade.study import losses, outcome
 from quietblade.study.keeping import Lap
 from quietblade.study.mode_tables import ModeTables
-from quietblade.study.preflight import Preflight
+from quietblade.study.preflight import Surroundings
 from quietblade.study.sound import Sound
 from quietblade.study.statics import Statics
 from quietblade.study.vibration import Vibration
@@ -24,10 +24,10 @@ _UNTIMED: Mapping[str, Lap] = MappingProxyType({})
 
 
 def gather(
-    case: Case,
-    facts: Preflight,
+    case: AnyCase,
+    facts: Surroundings,
     mesh: Mesh,
-    statics: Statics,
+    statics: Statics | None,
     vibrations: Mapping[str, Vibration],
     sounds: Mapping[str, Sound],
     tables: Mapping[str, ModeTables],
@@ -43,7 +43,7 @@ def gather(
     Parameters
     ----------
     case, facts, mesh, statics, vibrations, sounds, tables
-        What the stages have made, by configuration.
+        What the stages have made, by configuration; without statics for a body that is no blade.
     key : str
         Hash of the case and of the code.
     laps : mapping
@@ -55,21 +55,20 @@ def gather(
     notices = (
         *facts.notices,
         *mesh.notices,
-        *statics.notices(case),
-        *_singing(statics, vibrations),
+        *_steady_notices(case, statics, vibrations),
         *moved,
         *chain.from_iterable((*vibrations[n].notices, *sounds[n].notices) for n in vibrations),
         *others,
     )
     reports = {
-        "flow and structure": statics.solver,
+        **({} if statics is None else {"flow and structure": statics.solver}),
         **{f"modes {name}": vibration.solver for name, vibration in vibrations.items()},
         **{f"sweep {name}": sound.report for name, sound in sounds.items()},
     }
     return Result(
         title=case.title,
-        blade=paper_blade(case),
-        static=outcome.static_result(case, statics),
+        blade=paper_blade(case) if isinstance(case, Case) else "",
+        static=_static(case, statics),
         configurations={
             name: outcome.configuration_result(case, vibration, sounds[name], tables[name])
             for name, vibration in vibrations.items()
@@ -88,12 +87,28 @@ def gather(
     )
 
 
+def _static(case: AnyCase, statics: Statics | None) -> StaticResult | None:
+    if statics is None:
+        return None
+    assert isinstance(case, Case)  # nothing else bears a steady load
+    return outcome.static_result(case, statics)
+
+
+def _steady_notices(
+    case: AnyCase, statics: Statics | None, vibrations: Mapping[str, Vibration]
+) -> tuple[Notice, ...]:
+    if statics is None:
+        return ()
+    assert isinstance(case, Case)
+    return (*statics.notices(case), *_singing(statics, vibrations))
+
+
 def paper_blade(case: Case) -> str:
     """Which of the paper's blades a case stands for: shape, material and flow are those.
 
     What the paper leaves open (film, excitation, mesh, sphere) may be anything.
     """
-    for name in PRESETS:
+    for name in BLADES:
         family, _, blade = name.partition("-")
         if family == "paper" and _stated(case) == _stated(Case.parse(preset_text(name))):
             return blade

@@ -11,9 +11,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from quietblade.case import Case, Finding
+from quietblade.case import AnyCase, Finding
 from quietblade.errors import Notice
-from quietblade.geometry import Blade
 from quietblade.typing import FloatArray
 
 if TYPE_CHECKING:
@@ -31,7 +30,7 @@ def bands_of(kind: str, low: float, high: float) -> "Bands":
     return Bands.between(low, high, octave=octave)
 
 
-def limits(case: Case) -> "tuple[Limit, ...]":
+def limits(case: AnyCase) -> "tuple[Limit, ...]":
     """Make the limits that the case gives, in its order.
 
     Raises
@@ -42,7 +41,7 @@ def limits(case: Case) -> "tuple[Limit, ...]":
     return tuple(_limit(case, number) for number in range(len(case.limits)))
 
 
-def _limit(case: Case, number: int) -> "Limit":
+def _limit(case: AnyCase, number: int) -> "Limit":
     from quietblade.vibroacoustics.bands import Limit
 
     words = case.limits[number]
@@ -87,8 +86,15 @@ def _pair(row: list[str]) -> tuple[float, float]:
     return frequency, level
 
 
-def far_field_findings(case: Case, blade: Blade) -> Iterator[Finding]:
-    """Say what of the far field cannot be: distances, places and frequencies."""
+def far_field_findings(case: AnyCase, surface: FloatArray) -> Iterator[Finding]:
+    """Say what of the far field cannot be: distances, places and frequencies.
+
+    Parameters
+    ----------
+    case : AnyCase
+    surface : (n, 3) float array
+        Points of the wetted surface, closer to each other than a cell [m].
+    """
     words, radius, (low, high) = case.far_field, case.acoustics.sphere_radius, case.acoustics.band
     if words.distance is not None and words.distance < radius:
         yield Finding(
@@ -103,19 +109,17 @@ def far_field_findings(case: Case, blade: Blade) -> Iterator[Finding]:
                 f"lies outside the band of {low:g} to {high:g} Hz",
                 "Choose a frequency of the band, or widen acoustics.band",
             )
-    if words.points:
-        surface = blade.section(np.linspace(0.0, 1.0, 201), 161).reshape(-1, 3)
     for number, point in enumerate(words.points):
         distance = float(np.linalg.norm(surface - np.array(point), axis=1).min())
         if distance < case.mesh.size:
             yield Finding(
                 ("far_field", "points", number),
-                f"is {1e3 * distance:.3g} mm from the blade's surface, less than a cell",
-                f"Keep mesh.size ({1e3 * case.mesh.size:.3g} mm) away from the blade",
+                f"is {1e3 * distance:.3g} mm from the wetted surface, less than a cell",
+                f"Keep mesh.size ({1e3 * case.mesh.size:.3g} mm) away from it",
             )
 
 
-def limit_notices(case: Case, held: "tuple[Limit, ...]") -> Iterator[Notice]:
+def limit_notices(case: AnyCase, held: "tuple[Limit, ...]") -> Iterator[Notice]:
     """Say which limits have nothing to say about the band."""
     low, high = case.acoustics.band
     for number, (words, limit) in enumerate(zip(case.limits, held, strict=True)):

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from quietblade.case import Case, Finding
+from quietblade.case import AnyCase, Finding
 from quietblade.case.laminate import LaminateWords
 from quietblade.case.loss import (
     ConstantWords,
@@ -108,7 +108,7 @@ def region_of(name: str) -> str:
     return name.partition(_AT_SHEAR)[0]
 
 
-def moduli(case: Case) -> tuple[Modulus, ...]:
+def moduli(case: AnyCase) -> tuple[Modulus, ...]:
     """Complex moduli of the parts whose loss is more than a number.
 
     Raises
@@ -125,7 +125,7 @@ def moduli(case: Case) -> tuple[Modulus, ...]:
     return tuple(found)
 
 
-def moduli_notices(case: Case, found: tuple[Modulus, ...]) -> Iterator[Notice]:
+def moduli_notices(case: AnyCase, found: tuple[Modulus, ...]) -> Iterator[Notice]:
     """Say what the user should know of fitted moduli."""
     low, high = case.acoustics.band
     for modulus in found:
@@ -188,7 +188,7 @@ def modulus_table(found: tuple[Modulus, ...], band: tuple[float, float]) -> Modu
 
 
 def loss_parts(
-    case: Case,
+    case: AnyCase,
     found: tuple[Modulus, ...],
     structure: "Structure",
     state: "StructureState",
@@ -198,7 +198,7 @@ def loss_parts(
 
     Parameters
     ----------
-    case : Case
+    case : AnyCase
     found : tuple of Modulus
         As from `moduli`.
     structure, state, tangent
@@ -223,21 +223,23 @@ def loss_parts(
     return parts
 
 
-def _check_plies(case: Case) -> None:
-    words = case.material("blade")
-    if not isinstance(words, LaminateWords) or words.loss_factor is not None:
-        return
-    losses = [case.named_material(ply.material).loss_factor for ply in words.plies]
-    if any(loss != losses[0] for loss in losses) and any(isinstance(x, LossWords) for x in losses):
-        finding = Finding(
-            ("blade", "material"),
-            "the plies have different models of the loss",
-            "Give the laminate a loss_factor of its own",
-        )
-        raise case.invalid(finding)
+def _check_plies(case: AnyCase) -> None:
+    for part in case.parts:
+        words = case.material(part)
+        if not isinstance(words, LaminateWords) or words.loss_factor is not None:
+            continue
+        losses = [case.named_material(ply.material).loss_factor for ply in words.plies]
+        modelled = any(isinstance(loss, LossWords) for loss in losses)
+        if modelled and any(loss != losses[0] for loss in losses):
+            finding = Finding(
+                (part, "material"),
+                "the plies have different models of the loss",
+                "Give the laminate a loss_factor of its own",
+            )
+            raise case.invalid(finding)
 
 
-def _under_shear(case: Case, part: str, path: Path, words: LossWords) -> list[Modulus]:
+def _under_shear(case: AnyCase, part: str, path: Path, words: LossWords) -> list[Modulus]:
     """Moduli of a part: one, or one for each static shear that is given."""
     whole = _moduli(case, part, path, words, f"{part}.loss_factor")
     if not words.prestrain:
@@ -276,7 +278,7 @@ def _under_shear(case: Case, part: str, path: Path, words: LossWords) -> list[Mo
     return found
 
 
-def _moduli(case: Case, part: str, path: Path, words: LossWords, key: str) -> list[Modulus]:
+def _moduli(case: AnyCase, part: str, path: Path, words: LossWords, key: str) -> list[Modulus]:
     """Moduli of one model, without its prestrain."""
     from quietblade.materials.viscoelastic import (
         ConstantLoss,
@@ -308,7 +310,7 @@ def _moduli(case: Case, part: str, path: Path, words: LossWords, key: str) -> li
     ]
 
 
-def _shift_factor(case: Case, path: Path, words: ShiftWords, temperature: float) -> float:
+def _shift_factor(case: AnyCase, path: Path, words: ShiftWords, temperature: float) -> float:
     """Factor a_T of a temperature [K]."""
     from quietblade.materials.viscoelastic import ArrheniusShift, WlfShift
 
@@ -331,7 +333,7 @@ def _shift_factor(case: Case, path: Path, words: ShiftWords, temperature: float)
 
 
 def _fitted(
-    case: Case, part: str, path: Path, words: ModulusTableWords, key: str, static: float
+    case: AnyCase, part: str, path: Path, words: ModulusTableWords, key: str, static: float
 ) -> list[Modulus]:
     """Fits of a file, one for each static shear in it.
 
@@ -385,7 +387,7 @@ def _shear_of(group: MeasuredModulus, groups: tuple[MeasuredModulus, ...]) -> fl
     return group.shear if len(groups) > 1 else float("nan")
 
 
-def _static_modulus(case: Case, part: str) -> float:
+def _static_modulus(case: AnyCase, part: str) -> float:
     words = case.material(part)
     if isinstance(words, MooneyRivlinWords | NeoHookeanWords):
         return words.shear_modulus

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from quietblade.case import Case
+from quietblade.case import AnyCase
 from quietblade.mesh import Mesh
 from quietblade.results import mode_records as records
 from quietblade.results import model
@@ -19,7 +19,6 @@ from quietblade.vibroacoustics.loss import STREAM
 from quietblade.vibroacoustics.loss_shares import RADIATION, loss_shares
 from quietblade.vibroacoustics.matching import Match, match, participation, wet_mass
 from quietblade.vibroacoustics.modes import dry_modes
-from quietblade.vibroacoustics.naming import name_modes
 
 _BEYOND = 1.05
 """Dry modes are sought up to this multiple of what the wet shapes would have without water."""
@@ -37,7 +36,7 @@ class ModeTables:
 
 
 def mode_tables(
-    case: Case,
+    case: AnyCase,
     mesh: Mesh,
     vibrations: Mapping[str, Vibration],
     sounds: Mapping[str, Sound],
@@ -99,7 +98,7 @@ def _mode_table(
     return model.ModeTable(
         name=vibration.naming.name,
         frequency=modes.frequency,
-        loss_factor=np.nansum(losses.share, axis=1),
+        loss_factor=np.where(modes.rigid, np.nan, np.nansum(losses.share, axis=1)),
         film_loss=modes.loss_factor,
         radiation_loss=losses.share[:, losses.name.index(RADIATION)],
         purity=vibration.naming.purity,
@@ -114,7 +113,7 @@ def _count(vibration: Vibration) -> records.ModeCount:
     return records.ModeCount(
         counted=modes.count,
         highest=modes.highest,
-        character=naming.character,
+        character=tuple(naming.character),
         family_share=naming.shares,
         residual=modes.residual,
     )
@@ -151,7 +150,7 @@ def _response(vibration: Vibration, sound: Sound) -> tuple[FloatArray, ComplexAr
     return frequency, together.responses[0] @ reduced.columns()
 
 
-def _dry_modes(case: Case, mesh: Mesh, vibration: Vibration) -> records.DryModes:
+def _dry_modes(case: AnyCase, mesh: Mesh, vibration: Vibration) -> records.DryModes:
     operators, wet, frames = vibration.operators, vibration.modes, vibration.frames
     mass = operators.terms["M"]
     own = np.einsum("ij,ij->i", wet.vectors, (mass @ wet.vectors.T).T)
@@ -164,7 +163,7 @@ def _dry_modes(case: Case, mesh: Mesh, vibration: Vibration) -> records.DryModes
         solver=symmetric_solver(case, precision="double"),
     )
     shapes = frames.shapes(nodal_shapes(mesh, operators, found.vectors))
-    naming = name_modes(frames.span, frames.chord, shapes, vibration.masses)
+    naming = frames.names(shapes, vibration.masses, found.rigid)
     pairs = match(found.vectors, wet.vectors, mass)
     names = vibration.naming.name
     return records.DryModes(

@@ -10,7 +10,7 @@ from importlib.metadata import version
 import numpy as np
 
 from quietblade import __version__
-from quietblade.case import Case
+from quietblade.case import AnyCase, Case
 from quietblade.errors import Notice
 from quietblade.flow import (
     cavitation_number,
@@ -250,7 +250,7 @@ def _placed(sections: DeformedSections, k: int) -> FloatArray:
 
 
 def configuration_result(
-    case: Case, vibration: Vibration, sound: Sound, tables: ModeTables
+    case: AnyCase, vibration: Vibration, sound: Sound, tables: ModeTables
 ) -> model.ConfigurationResult:
     """Modes and spectrum of one configuration."""
     operators = vibration.operators
@@ -295,7 +295,7 @@ def _spectrum(vibration: Vibration, sound: Sound) -> model.Spectrum:
     )
 
 
-def _sweep(case: Case, sound: Sound) -> model.SweepRecord:
+def _sweep(case: AnyCase, sound: Sound) -> model.SweepRecord:
     certificate = sound.certificate
     if certificate is None:
         solved = sum(sound.report.factorizations.values())

@@ -4,15 +4,20 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from quietblade.case import Case
+from quietblade.case import AnyCase, BodyCase, Case
 from quietblade.errors import GeometryError, Notice
 from quietblade.linalg.memory import available_memory
 from quietblade.linalg.trial import trial_seconds
 from quietblade.study import translate
-from quietblade.study.assumptions import Assumption, assumptions, undeformed_flow
+from quietblade.study.assumptions import (
+    Assumption,
+    assumptions,
+    body_assumptions,
+    undeformed_flow,
+)
 from quietblade.study.costs import Cost, estimate
-from quietblade.study.forecast import Size, forecast
-from quietblade.study.preflight import Preflight
+from quietblade.study.forecast import Size, forecast, forecast_shell
+from quietblade.study.preflight import Preflight, Surroundings
 
 
 @dataclass(frozen=True)
@@ -40,30 +45,32 @@ class Outlook:
     notices: tuple[Notice, ...]
 
 
-def look_ahead(case: Case, known: Preflight, trial: float | None = None) -> Outlook:
+def look_ahead(case: AnyCase, known: Surroundings, trial: float | None = None) -> Outlook:
     """Say what a run will be like; a second of work.
 
     Parameters
     ----------
-    case : Case
-    known : Preflight
+    case : AnyCase
+    known : Surroundings
         Of the case.
     trial : float, optional
         Speed of the machine, see `quietblade.linalg.trial.trial_seconds`; measured if left out.
     """
-    size = forecast(
-        known.blade, case.mesh.size, known.centre, known.radius, translate.water_size(case)
-    )
-    cost = estimate(case, known.blade, size, trial_seconds() if trial is None else trial)
+    size = _size(case, known)
+    blade = known.blade if isinstance(known, Preflight) else None
+    cost = estimate(case, blade, size, trial_seconds() if trial is None else trial)
     free = available_memory()
     judged: tuple[Assumption, ...] = ()
     faults: list[Notice] = []
-    try:
-        flow = undeformed_flow(case, known.blade)
-    except GeometryError as error:
-        faults.append(Notice("flow", f"the sections cannot be solved: {error}"))
+    if blade is None or not isinstance(case, Case):
+        judged = body_assumptions(case, known.clearance)
     else:
-        judged = assumptions(case, flow, known.clearance)
+        try:
+            flow = undeformed_flow(case, blade)
+        except GeometryError as error:
+            faults.append(Notice("flow", f"the sections cannot be solved: {error}"))
+        else:
+            judged = assumptions(case, flow, known.clearance)
     doubts = [notice for a in judged if (notice := a.notice()) is not None]
     return Outlook(
         size=size,
@@ -72,6 +79,14 @@ def look_ahead(case: Case, known: Preflight, trial: float | None = None) -> Outl
         assumptions=judged,
         notices=(*faults, *doubts, *_memory_notices(cost, free)),
     )
+
+
+def _size(case: AnyCase, known: Surroundings) -> Size:
+    around = case.mesh.size, known.centre, known.radius, translate.water_size(case)
+    if isinstance(known, Preflight):
+        return forecast(known.blade, *around)
+    assert isinstance(case, BodyCase)
+    return forecast_shell(case.body.radius, case.body.thickness, *around)
 
 
 def _memory_notices(cost: Cost, free: int | None) -> Iterator[Notice]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import brentq
 
-from quietblade.case import Case, Finding
+from quietblade.case import AnyCase, Case, Finding
 from quietblade.case.materials import MooneyRivlinWords, NeoHookeanWords
 from quietblade.errors import Notice
 from quietblade.geometry import Blade
@@ -26,40 +26,31 @@ _SOFTEST_FILM = 1e3  # [Pa]
 
 
 @dataclass(frozen=True)
-class Preflight:
-    """A case that can be run, and what follows from it without a mesh.
+class Surroundings:
+    """A body in its sphere of water, as far as it is known without a mesh.
 
     Attributes
     ----------
-    blade : Blade
-        The blade; it is a possible shape and its film fits.
     centre : (3,) float array
         Centre of the water sphere [m].
     radius, clearance : float
-        Radius of the sphere, and least distance of the blade at rest from it [m].
-    incidence : (2,) float array
-        Angle of attack of the undeformed blade at root and tip [rad].
-    film_cover : float or None
-        Least material between the film and a face [m].
+        Radius of the sphere, and least distance of the body at rest from it [m].
     kr : (2,) float array
         Wave number times radius at the ends of the band.
     acoustic_wavelength, bending_wavelength : float
-        In the water, and of the blade in the water (estimate), at the top of the band [m].
+        In the water, and of the body in the water (estimate), at the top of the band [m].
     elements_per_acoustic_wavelength, elements_per_bending_wavelength : float
         Wavelength over the largest edge length of the elements.
     surface_elements : int
-        Estimated number of triangles on the blade.
+        Estimated number of triangles on the body.
     moduli : tuple of Modulus
         Complex moduli of the parts whose loss is more than a number.
     notices : tuple of Notice
     """
 
-    blade: Blade
     centre: FloatArray
     radius: float
     clearance: float
-    incidence: FloatArray
-    film_cover: float | None
     kr: FloatArray
     acoustic_wavelength: float
     bending_wavelength: float
@@ -68,6 +59,25 @@ class Preflight:
     surface_elements: int
     moduli: tuple[Modulus, ...]
     notices: tuple[Notice, ...]
+
+
+@dataclass(frozen=True)
+class Preflight(Surroundings):
+    """A case of a blade that can be run, and what follows from it without a mesh.
+
+    Attributes
+    ----------
+    blade : Blade
+        The blade; it is a possible shape and its film fits.
+    incidence : (2,) float array
+        Angle of attack of the undeformed blade at root and tip [rad].
+    film_cover : float or None
+        Least material between the film and a face [m].
+    """
+
+    blade: Blade
+    incidence: FloatArray
+    film_cover: float | None
 
 
 def preflight(case: Case) -> Preflight:
@@ -91,7 +101,7 @@ def preflight(case: Case) -> Preflight:
     findings = [
         *_sphere_findings(case, clearance, outermost),
         *_mesh_findings(case, blade, faces),
-        *far_field_findings(case, blade),
+        *far_field_findings(case, _surface(blade)),
         *_campbell_findings(case),
     ]
     if findings:
@@ -118,8 +128,8 @@ def preflight(case: Case) -> Preflight:
         surface_elements=faces,
         moduli=complex_moduli,
         notices=(
-            *_radiation_notices(case, float(kr[0])),
-            *_mesh_notices(case, per_bending, per_acoustic),
+            *radiation_notices(case, float(kr[0])),
+            *mesh_notices(case, per_bending, per_acoustic),
             *_material_notices(case),
             *limit_notices(case, held),
             *moduli_notices(case, complex_moduli),
@@ -145,13 +155,31 @@ def bending_wavelength(case: Case, blade: Blade, frequency: float) -> float:
     xi = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, 201))
     half = blade.family.half_thickness(xi, blade.thickness(middle), blade.trailing_edge)
     height = float(2.0 * np.trapezoid(half, xi) * blade.chord(middle)[0])
-    rigidity = solids.bending_modulus(case) * height**3 / 12.0
-    mass = solids.blade_density(case) * height
+    return plate_wavelength(
+        rigidity=solids.bending_modulus(case) * height**3 / 12.0,
+        mass=solids.blade_density(case) * height,
+        water=2.0 * case.water.density,
+        frequency=frequency,
+    )
+
+
+def plate_wavelength(*, rigidity: float, mass: float, water: float, frequency: float) -> float:
+    """Wavelength of bending waves of a plate in water [m], well below coincidence.
+
+    Parameters
+    ----------
+    rigidity, mass : float
+        Of the plate by its width, and by its area [N m, kg/m2].
+    water : float
+        Densities of the water on its sides, added up [kg/m3].
+    frequency : float
+        [Hz]
+    """
     omega = 2.0 * np.pi * frequency
 
     def excess(log_k: float) -> float:
         k = np.exp(log_k)
-        added = 2.0 * case.water.density / k
+        added = water / k
         return float(np.log(rigidity) + 4.0 * log_k - np.log(omega**2 * (mass + added)))
 
     return float(2.0 * np.pi / np.exp(brentq(excess, -50.0, 50.0)))
@@ -184,6 +212,10 @@ def _sphere_findings(case: Case, clearance: float, where: float) -> Iterator[Fin
         )
 
 
+def _surface(blade: Blade) -> FloatArray:
+    return blade.section(np.linspace(0.0, 1.0, 201), 161).reshape(-1, 3)
+
+
 def _surface_elements(blade: Blade, size: float) -> int:
     triangle = 0.25 * np.sqrt(3.0) * size**2
     count = 2.0 * blade.planform_area() / triangle if triangle > 0.0 else np.inf
@@ -192,23 +224,34 @@ def _surface_elements(blade: Blade, size: float) -> int:
 
 def _mesh_findings(case: Case, blade: Blade, faces: int) -> Iterator[Finding]:
     longest = float(blade.chord(np.linspace(0.0, 1.0, 101)).max())
-    size, water_size = case.mesh.size, case.mesh.water_size
+    size = case.mesh.size
     if size > 0.5 * longest:
         yield Finding(
             ("mesh", "size"),
             f"is too coarse: less than two elements on a chord of {1e3 * longest:.4g} mm",
             f'Try size = "{100 * longest:.3g} mm", a tenth of the longest chord',
         )
-    elif faces > _MOST_FACES:
+    elif too_fine(faces):
         yield Finding(
             ("mesh", "size"),
             f"is too fine: about {faces:.2g} triangles on the blade alone",
             f'Try size = "{100 * longest:.3g} mm", a tenth of the longest chord',
         )
+    yield from water_size_findings(case)
+
+
+def too_fine(faces: int) -> bool:
+    """Whether so many triangles on a body are a mistake."""
+    return faces > _MOST_FACES
+
+
+def water_size_findings(case: AnyCase) -> Iterator[Finding]:
+    """Hold the size of the cells at the sphere against the others."""
+    size, water_size = case.mesh.size, case.mesh.water_size
     if water_size is not None and not size <= water_size <= case.acoustics.sphere_radius:
         yield Finding(
             ("mesh", "water_size"),
-            "must lie between the size on the blade and the sphere's radius",
+            "must lie between the size on the surface and the sphere's radius",
             "Leave it out: a good size is then chosen",
         )
 
@@ -238,7 +281,8 @@ def _film_cover(blade: Blade) -> float | None:
     return float(np.min(blade.film_cover(s, xi)))
 
 
-def _radiation_notices(case: Case, kr: float) -> Iterator[Notice]:
+def radiation_notices(case: AnyCase, kr: float) -> Iterator[Notice]:
+    """Say where an approximate condition is not exact enough."""
     if kr < _LEAST_KR and case.acoustics.radiation != "dtn":
         yield Notice(
             "acoustics.radiation",
@@ -250,7 +294,8 @@ def _radiation_notices(case: Case, kr: float) -> Iterator[Notice]:
         )
 
 
-def _mesh_notices(case: Case, per_bending: float, per_acoustic: float) -> Iterator[Notice]:
+def mesh_notices(case: AnyCase, per_bending: float, per_acoustic: float) -> Iterator[Notice]:
+    """Say where cells are too few for a wavelength."""
     for key, count, wave in (
         ("mesh.size", per_bending, "bending wavelength"),
         ("mesh.water_size", per_acoustic, "acoustic wavelength"),
@@ -265,10 +310,15 @@ def _mesh_notices(case: Case, per_bending: float, per_acoustic: float) -> Iterat
             )
 
 
-def _material_notices(case: Case) -> Iterator[Notice]:
+def unused_notices(case: AnyCase) -> Iterator[Notice]:
+    """Say which materials are not used."""
     for name in case.materials:
         if name not in solids.used_materials(case):
             yield Notice(f"materials.{name}", "this material is not used", remedy="Remove it")
+
+
+def _material_notices(case: Case) -> Iterator[Notice]:
+    yield from unused_notices(case)
     yield from solids.laminate_notices(case)
     parts = [("blade", solids.bending_modulus(case), _SOFTEST_SOLID)]
     if case.film is not None:

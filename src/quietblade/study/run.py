@@ -2,13 +2,14 @@
 """The whole study of a case: the only place that knows the order of the stages."""
 
 import hashlib
+from collections.abc import Callable
 from functools import partial
 from itertools import chain
 
 import ngsolve as ngs
 
 from quietblade import __version__
-from quietblade.case import Case
+from quietblade.case import AnyCase, BodyCase, Case
 from quietblade.errors import Notice
 from quietblade.geometry import Blade
 from quietblade.linalg import default_threads
@@ -23,6 +24,9 @@ from quietblade.results.lock import locked
 from quietblade.results.model import Result
 from quietblade.results.store import RunFolder
 from quietblade.study import translate
+from quietblade.study.blade_vibration import solve_vibration
+from quietblade.study.body_preflight import body_preflight
+from quietblade.study.body_run import run_body
 from quietblade.study.campbell import solve_campbell
 from quietblade.study.clock import Stages
 from quietblade.study.fields import write_static_fields, write_vibration_fields
@@ -34,16 +38,16 @@ from quietblade.study.preflight import Preflight, preflight
 from quietblade.study.sound import solve_sound
 from quietblade.study.stages import origins
 from quietblade.study.statics import Statics, build_structure, solve_statics
-from quietblade.study.vibration import frequencies, solve_vibration
+from quietblade.study.vibration import frequencies
 from quietblade.typing import Progress, silent
 
 
-def run_key(case: Case, version: str = __version__) -> str:
+def run_key(case: AnyCase, version: str = __version__) -> str:
     """Key of a result: the content of the case and the version of the code."""
     return hashlib.sha256(f"{case.content_key()} {version}".encode()).hexdigest()
 
 
-def finished(case: Case, folder: RunFolder) -> Result | None:
+def finished(case: AnyCase, folder: RunFolder) -> Result | None:
     """Load the result of this very case, if the folder holds it whole."""
     try:
         result = folder.load()
@@ -53,7 +57,7 @@ def finished(case: Case, folder: RunFolder) -> Result | None:
 
 
 def run_case(
-    case: Case,
+    case: AnyCase,
     folder: RunFolder,
     progress: Progress = silent,
     *,
@@ -67,7 +71,7 @@ def run_case(
 
     Parameters
     ----------
-    case : Case
+    case : AnyCase
     folder : RunFolder
         Made if need be; files of an earlier run are replaced.
     progress : callable
@@ -90,13 +94,21 @@ def run_case(
         A stage failed.
     """
     ngs.SetNumThreads(default_threads())
-    facts = preflight(case)
+    compute = _planned(case)
     with locked(folder.root), logging_to(folder.log, progress) as report:
         folder.tidy()
         store = StageStore(folder.stages) if keep else None
         stages = Stages(report, origins(case), store, force=force)
-        result = _run(case, facts, folder, stages)
+        result = compute(folder, stages)
     return result
+
+
+def _planned(case: AnyCase) -> Callable[[RunFolder, Stages], Result]:
+    """Check a case, and say what is to be done of it."""
+    if isinstance(case, BodyCase):
+        return partial(run_body, case, body_preflight(case), run_key(case))
+    assert isinstance(case, Case)
+    return partial(_run, case, preflight(case))
 
 
 def _run(case: Case, facts: Preflight, folder: RunFolder, stages: Stages) -> Result:

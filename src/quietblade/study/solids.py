@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from quietblade.case import Case, Finding
+from quietblade.case import AnyCase, Case, Finding
 from quietblade.case.laminate import LaminateModel, LaminateWords, PlyWords
 from quietblade.case.materials import (
     IsotropicWords,
@@ -153,12 +153,13 @@ def laminate_notices(case: Case) -> Iterator[Notice]:
         )
 
 
-def used_materials(case: Case) -> frozenset[str]:
+def used_materials(case: AnyCase) -> frozenset[str]:
     """Names of all materials that the case uses, plies included."""
-    names = {case.blade.material} | ({case.film.material} if case.film else set())
-    words = case.material("blade")
-    if isinstance(words, LaminateWords):
-        names |= {ply.material for ply in words.plies}
+    names = {case.material_name(part) for part in case.parts}
+    for part in case.parts:
+        words = case.material(part)
+        if isinstance(words, LaminateWords):
+            names |= {ply.material for ply in words.plies}
     return frozenset(names)
 
 
@@ -168,7 +169,7 @@ def _material(case: Case, part: str, name: str, blade: Blade, basis: "NodalBasis
     words = case.material(part)
     match words:
         case IsotropicWords():
-            return _isotropic(name, words)
+            return isotropic(name, words)
         case MooneyRivlinWords():
             return materials.MooneyRivlin(
                 name, words.density, words.c10, words.c01, words.bulk_modulus, constant_loss(words)
@@ -198,7 +199,14 @@ def _draped(
     return materials.layered(laminate, axes, materials.surface_depth(blade, basis, part))
 
 
-def _isotropic(name: str, words: IsotropicWords) -> "IsotropicSVK":
+def isotropic(name: str, words: IsotropicWords) -> "IsotropicSVK":
+    """Make the law of an isotropic material.
+
+    Raises
+    ------
+    MaterialError
+        Its constants are not admissible.
+    """
     from quietblade import materials
 
     return materials.IsotropicSVK(
@@ -228,7 +236,7 @@ def _ply(case: Case, ply: PlyWords, repeat: int) -> "Ply":
     share = None if ply.fraction is None else ply.fraction / repeat
     match words:
         case IsotropicWords():
-            solid: IsotropicSVK | OrthotropicSVK = _isotropic(ply.material, words)
+            solid: IsotropicSVK | OrthotropicSVK = isotropic(ply.material, words)
         case OrthotropicWords():
             solid = _orthotropic(ply.material, words)
         case _:

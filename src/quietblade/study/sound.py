@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from quietblade.card import Card, Shown, shortened
-from quietblade.case import Case
+from quietblade.case import AnyCase
 from quietblade.errors import Notice
 from quietblade.linalg import SolverReport
 from quietblade.study.far_field import FarField, Samples, solve_far_field
@@ -104,7 +104,7 @@ class Sound(Shown):
 
 
 def solve_sound(
-    case: Case, vibration: Vibration, frequency: FloatArray, progress: Progress
+    case: AnyCase, vibration: Vibration, frequency: FloatArray, progress: Progress
 ) -> Sound:
     """Find response and powers at the frequencies [Hz], by the sweep that the case asks for."""
     if vibration.sweep is None:
@@ -112,7 +112,9 @@ def solve_sound(
     return _reduced(case, vibration, frequency, progress)
 
 
-def _direct(case: Case, vibration: Vibration, frequency: FloatArray, progress: Progress) -> Sound:
+def _direct(
+    case: AnyCase, vibration: Vibration, frequency: FloatArray, progress: Progress
+) -> Sound:
     """One factorisation a frequency."""
     operators = vibration.operators
     solver = symmetric_solver(case)
@@ -166,7 +168,9 @@ def _direct(case: Case, vibration: Vibration, frequency: FloatArray, progress: P
     )
 
 
-def _reduced(case: Case, vibration: Vibration, frequency: FloatArray, progress: Progress) -> Sound:
+def _reduced(
+    case: AnyCase, vibration: Vibration, frequency: FloatArray, progress: Progress
+) -> Sound:
     """Evaluate the certified reduced model of the configuration at all frequencies."""
     sweep = vibration.sweep
     assert sweep is not None
@@ -219,7 +223,7 @@ def _reduced(case: Case, vibration: Vibration, frequency: FloatArray, progress: 
     )
 
 
-def _patterns(case: Case, peaks: Peaks) -> FloatArray:
+def _patterns(case: AnyCase, peaks: Peaks) -> FloatArray:
     """Frequencies whose directivity is told [Hz]: the peaks, then those of the case."""
     return np.concatenate([peaks.frequency, np.array(case.far_field.frequencies)])
 

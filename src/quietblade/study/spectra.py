@@ -6,7 +6,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from quietblade.case import Case, Finding
+from quietblade.case import AnyCase, Finding
 from quietblade.study.columns import read_columns
 from quietblade.typing import AnyArray, FloatArray
 
@@ -17,7 +17,7 @@ Table: TypeAlias = tuple[FloatArray, AnyArray]
 """Frequencies [Hz], and complex amplitudes or real densities."""
 
 
-def names(case: Case) -> tuple[str, ...]:
+def names(case: AnyCase) -> tuple[str, ...]:
     """Names of the excitations: as given, or the kind, with a number where that is not enough."""
     taken = [words.name for words in case.excitation if words.name]
     found: list[str] = []
@@ -30,7 +30,7 @@ def names(case: Case) -> tuple[str, ...]:
     return tuple(found)
 
 
-def spectra(case: Case) -> dict[int, Table]:
+def spectra(case: AnyCase) -> dict[int, Table]:
     """Frequencies and values of the excitations that have a table, by number.
 
     Raises

@@ -17,7 +17,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from quietblade.case import Case
+from quietblade.case import AnyCase, Case
 from quietblade.study import translate
 
 PACKAGES = ("ngsolve", "gmsh", "rslab", "numpy", "scipy", "xarray", "h5netcdf")
@@ -58,6 +58,14 @@ _VIBRATION = (
     "acoustics.flow_damping", "acoustics.signal", "acoustics.correlation", "excitation",
     "files.excitation", "transfer", "solver",
 )  # fmt: skip
+
+_SWEEP = (
+    "acoustics.band", "acoustics.step", "acoustics.points_per_mode",
+    "acoustics.configurations", "acoustics.signal", "acoustics.correlation",
+    "excitation", "files.excitation", "transfer", "far_field", "solver",
+)  # fmt: skip
+
+_TABLES = ("acoustics.dry_modes", "solver")
 
 ALWAYS = (
     "bands",
@@ -114,16 +122,9 @@ def stages(
         table[stage] = Stage(_VIBRATION, after=before[name])
     for name in configurations:
         # the frequencies of both sweeps are refined around the modes of both configurations
-        table[f"sweep {name}"] = Stage(
-            (
-                "acoustics.band", "acoustics.step", "acoustics.points_per_mode",
-                "acoustics.configurations", "acoustics.signal", "acoustics.correlation",
-                "excitation", "files.excitation", "transfer", "far_field", "solver",
-            ),
-            after=modes,
-        )  # fmt: skip
+        table[f"sweep {name}"] = Stage(_SWEEP, after=modes)
     sweeps = tuple(f"sweep {name}" for name in configurations)
-    table["mode tables"] = Stage(("acoustics.dry_modes", "solver"), after=(*modes, *sweeps))
+    table["mode tables"] = Stage(_TABLES, after=(*modes, *sweeps))
     if campbell:
         table["Campbell diagram"] = Stage(
             (
@@ -135,6 +136,21 @@ def stages(
             after=("mesh",),
         )  # fmt: skip
     return table
+
+
+def body_stages() -> dict[str, Stage]:
+    """Return the stages of a run of a body that is no blade, which is at rest (C0)."""
+    return {
+        "mesh": Stage(
+            (
+                "body", "mesh", "acoustics.sphere_radius", "acoustics.sphere_centre",
+                "excitation[[]*].axis", "excitation[[]*].half_angle",
+            )
+        ),
+        "modes C0": Stage(_VIBRATION, after=("mesh",)),
+        "sweep C0": Stage(_SWEEP, after=("modes C0",)),
+        "mode tables": Stage(_TABLES, after=("modes C0", "sweep C0")),
+    }  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -175,16 +191,11 @@ class Origin:
         return f"follows from {', '.join(before)}" if before else ""
 
 
-def origins(case: Case) -> dict[str, Origin]:
+def origins(case: AnyCase) -> dict[str, Origin]:
     """Return the origin of each stage of a case, by name and in their order."""
     known = dict(inputs(case))
     found: dict[str, Origin] = {}
-    wanted = stages(
-        case.acoustics.configurations,
-        stream=case.acoustics.flow_damping,
-        campbell=case.campbell is not None,
-    )
-    for name, stage in wanted.items():
+    for name, stage in _wanted(case).items():
         found[name] = Origin(
             {key: value for key, value in known.items() if stage.depends_on(key)},
             {other: found[other].key for other in stage.after},
@@ -193,7 +204,17 @@ def origins(case: Case) -> dict[str, Origin]:
     return found
 
 
-def inputs(case: Case) -> Iterator[tuple[str, Any]]:
+def _wanted(case: AnyCase) -> dict[str, Stage]:
+    if not isinstance(case, Case):
+        return body_stages()
+    return stages(
+        case.acoustics.configurations,
+        stream=case.acoustics.flow_damping,
+        campbell=case.campbell is not None,
+    )
+
+
+def inputs(case: AnyCase) -> Iterator[tuple[str, Any]]:
     """Return the dotted keys of `Case.physics` with their values, all of them.
 
     What the case leaves to quietblade enters with the value that it gets, so that a change of the

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import ngsolve as ngs
 
-from quietblade.case import Case
+from quietblade.case import AnyCase, BodyCase, Case, parse_case
 from quietblade.case.presets import preset_text
 from quietblade.errors import CaseError
 from quietblade.geometry import Blade
@@ -18,35 +18,40 @@ from quietblade.mesh.motion import solve_mesh_motion
 from quietblade.results.model import Result, StaticResult
 from quietblade.results.store import RunFolder
 from quietblade.study import outcome, translate, vibration
+from quietblade.study.blade_vibration import solve_vibration
 from quietblade.study.gather import gather
 from quietblade.study.mode_tables import mode_tables
 from quietblade.study.preflight import preflight
 from quietblade.study.run import run_case, run_key
 from quietblade.study.sound import Sound, solve_sound
 from quietblade.study.statics import Statics, solve_statics
-from quietblade.study.vibration import Vibration, solve_vibration
+from quietblade.study.vibration import Vibration
 from quietblade.typing import FloatArray, Progress, silent
 
 
-def preset(name: str) -> Case:
+def preset(name: str) -> Case | BodyCase:
     """Return a case to start from, by the names that ``quietblade new`` knows.
+
+    All are of blades but ``sphere``, a `BodyCase` for `run`.
 
     Raises
     ------
     CaseError
         There is no preset of this name.
     """
-    return Case.parse(preset_text(name), f"{name}.toml")
+    return parse_case(preset_text(name), f"{name}.toml")
 
 
-def make_blade(case: Case) -> Blade:
+def make_blade(case: AnyCase) -> Blade:
     """Return the undeformed blade, after everything that can be checked without a mesh.
 
     Raises
     ------
     CaseError
-        The case cannot be.
+        The case cannot be, or is of another body.
     """
+    if not isinstance(case, Case):
+        raise CaseError("this case has no blade; `run` computes it at once")
     return preflight(case).blade
 
 
@@ -175,7 +180,7 @@ def collect(
     )
 
 
-def run(case: Case, folder: str | PathLike[str], progress: Progress = silent) -> Result:
+def run(case: AnyCase, folder: str | PathLike[str], progress: Progress = silent) -> Result:
     """Compute a case at once and keep everything in a folder, as ``quietblade run`` does.
 
     What an earlier run of the folder has computed, and nothing has changed, is used again.

@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from quietblade.case import Case, InvalidCaseError
+from quietblade.case import AnyCase, InvalidCaseError
 from quietblade.case.problems import Problem, shown
 from quietblade.case.study import Study, flat
 from quietblade.errors import QuietbladeError
@@ -29,13 +29,13 @@ from quietblade.study.keeping import StageStore
 from quietblade.study.run import finished, run_case
 from quietblade.typing import Progress, silent
 
-Runner = Callable[[Case, RunFolder, Progress], Result]
+Runner = Callable[[AnyCase, RunFolder, Progress], Result]
 """Computes a case into a folder."""
 
 Announce = Callable[[int, int, str, str], None]
 """Called with the number of a run, how many there are, its name, and what becomes of it."""
 
-_STAGES = ("blade", "film", "materials", "root", "mesh", "water", "flow", "static", "loads")
+_STAGES = ("blade", "film", "body", "materials", "root", "mesh", "water", "flow", "static", "loads")
 """Tables that the mesh and the equilibrium depend on, before those of vibration and sound."""
 
 
@@ -49,14 +49,14 @@ class Planned:
         Names of the study file.
     changes : mapping
         Keys to what the variant writes.
-    words : Case
+    words : AnyCase
         The case with these changes.
     """
 
     case: str
     variant: str
     changes: Mapping[str, str]
-    words: Case
+    words: AnyCase
 
     @property
     def name(self) -> str:
@@ -186,7 +186,7 @@ def run_study(
 def _row(run: Planned, result: Result | None, message: str) -> StudyRow:
     if result is None:
         return StudyRow(run.case, run.variant, run.changes, "failed", message)
-    state = "finished" if result.static.converged else "not converged"
+    state = "finished" if result.converged else "not converged"
     return StudyRow(run.case, run.variant, run.changes, state, figures=headline_figures(result))
 
 

@@ -6,7 +6,7 @@ from typing import Self
 
 import numpy as np
 
-from quietblade.case import Case
+from quietblade.case import AnyCase
 from quietblade.case.excitation import ShaftWords
 from quietblade.study.excitations import Excited
 from quietblade.typing import ComplexArray, FloatArray
@@ -110,13 +110,13 @@ def force_of_unit(excited: Excited, work: ComplexArray) -> ComplexArray:
 
 
 def solve_transfer(
-    case: Case, excited: Excited, combined: Combined, held: ComplexArray
+    case: AnyCase, excited: Excited, combined: Combined, held: ComplexArray
 ) -> Transfer | None:
     """Find the transfer functions that the case asks for.
 
     Parameters
     ----------
-    case : Case
+    case : AnyCase
     excited : Excited
     combined : Combined
         Of the loads.

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from quietblade import geometry
-from quietblade.case import Case, Finding
+from quietblade.case import AnyCase, Case, Finding
 from quietblade.case.excitation import PatchWords
 from quietblade.case.spans import (
     ConstantSpan,
@@ -136,15 +136,13 @@ def span_function(words: SpanValue) -> SpanFunction:
             return geometry.formula(formula, scale)
 
 
-def sphere(case: Case) -> tuple[FloatArray, float]:
+def sphere(case: AnyCase) -> tuple[FloatArray, float]:
     """Centre (3,) and radius of the water sphere [m]."""
     centre = case.acoustics.sphere_centre
-    if centre is None:
-        centre = (0.0, 0.0, case.blade.hub_radius + 0.5 * case.blade.span)
-    return np.array(centre), case.acoustics.sphere_radius
+    return np.array(case.middle if centre is None else centre), case.acoustics.sphere_radius
 
 
-def water_size(case: Case) -> float:
+def water_size(case: AnyCase) -> float:
     """Edge length of the elements at the sphere [m], as given or as the case needs it."""
     if case.mesh.water_size is not None:
         return case.mesh.water_size
@@ -214,20 +212,22 @@ def spin(case: Case) -> "Spin":
     return Spin(case.flow.rotation)
 
 
-def water(case: Case) -> "Water":
+def water(case: AnyCase) -> "Water":
     """Water that carries the sound."""
     from quietblade.vibroacoustics.fluid import Water
 
     return Water(case.water.density, case.water.sound_speed)
 
 
-def radiation(case: Case, mesh: "Mesh", motion: "ngs.GridFunction | None") -> "RadiationCondition":
-    """Radiation condition on the outer sphere, exact up to the degree that the blade needs.
+def radiation(
+    case: AnyCase, mesh: "Mesh", motion: "ngs.GridFunction | None"
+) -> "RadiationCondition":
+    """Radiation condition on the outer sphere, exact up to the degree that the body needs.
 
     Raises
     ------
     InvalidCaseError
-        The blade is too close to the sphere.
+        The body is too close to the sphere.
     """
     from quietblade.vibroacoustics.dtn import fitted_dtn
     from quietblade.vibroacoustics.radiation import Bgt1, Bgt2
@@ -252,7 +252,7 @@ def radiation(case: Case, mesh: "Mesh", motion: "ngs.GridFunction | None") -> "R
                 raise case.invalid(finding) from error
 
 
-def base_frequencies(case: Case) -> FloatArray:
+def base_frequencies(case: AnyCase) -> FloatArray:
     """Frequencies of the sweep before refinement [Hz], from end to end of the band."""
     low, high = case.acoustics.band
     intervals = max(1, round((high - low) / case.acoustics.step))

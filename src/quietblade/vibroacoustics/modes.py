@@ -20,7 +20,7 @@ from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigsh
 from quietblade.card import Card, Shown, shortened
 from quietblade.errors import ConvergenceError, Notice, SolverError
 from quietblade.linalg import Factorization, SparseSolver, make_solver
-from quietblade.typing import AnyArray, FloatArray, IntArray, Progress, silent
+from quietblade.typing import AnyArray, BoolArray, FloatArray, IntArray, Progress, silent
 from quietblade.vibroacoustics.loss import STREAM, Loss, Lossy, loss_term, lossy_parts
 from quietblade.vibroacoustics.operators import Operators
 
@@ -65,6 +65,11 @@ class WetModes(Shown):
     notices: tuple[Notice, ...] = field(default=())
     losses: Mapping[str, FloatArray] = field(default_factory=dict)
     """Share of each lossy region in ``loss_factor``, (m,)."""
+
+    @property
+    def rigid(self) -> BoolArray:
+        """Which modes (m,) are rigid motions, which take no elastic energy."""
+        return np.isnan(self.loss_factor)
 
     def card(self) -> Card:
         """Frequencies and material losses, and below which frequency none is missing."""

@@ -36,7 +36,7 @@ from quietblade.vibroacoustics.radiation import (
     static_exterior,
 )
 
-SOLID = "blade|film"
+SOLID = "blade|film|body"
 FILM = "film"
 CLAMPED = "root"
 _ROUNDING = 1e-9

@@ -120,8 +120,8 @@ def _title(surface: MovingSurface, motion: Motion) -> str:
     if not motion.name:
         return f"Deformation under load, up to {1e3 * motion.amplitude.max():.1f} mm, to scale"
     return (
-        f"{surface.configuration}, mode {motion.name}, {motion.frequency:.1f} Hz, drawn up to "
-        f"{100 * _AMPLITUDE:.0f} % of the span; bright: large amplitude"
+        f"{surface.configuration}, mode {motion.name}, {motion.frequency:z.1f} Hz, drawn up to "
+        f"{100 * _AMPLITUDE:.0f} % of the length along z; bright: large amplitude"
     )
 
 

@@ -107,8 +107,9 @@ def draw_balloons(result: Result) -> Figure:
                 len(members), _BALLOONS, _BALLOONS * line + column + 1, projection="3d"
             )
             _draw_balloon(ax, configuration, int(row), norm)
+            whose = (name, names[int(row)]) if int(row) in names else (name,)
             ax.set_title(
-                f"{name} {names.get(int(row), '')}, {pattern.frequency[row]:.1f} Hz\n"
+                f"{' '.join(whose)}, {pattern.frequency[row]:.1f} Hz\n"
                 f"$L_S$ {pattern.source_level[row]:.1f} dB, DI {pattern.index[row]:.1f} dB",
                 fontsize=7.5,
                 loc="center",
@@ -116,7 +117,7 @@ def draw_balloons(result: Result) -> Figure:
             )
     colours = ScalarMappable(norm, SEQUENTIAL)
     bar = figure.colorbar(colours, ax=figure.axes, shrink=0.6, pad=0.02)
-    bar.set_label("Level, also the radius [dB re loudest direction]")
+    bar.set_label("Level, also the radius\n[dB re loudest direction]")
     figure.suptitle(f"Directivity: {result.title}\n{_note(result)}", x=0.01, ha="left",
                     fontsize=8.0)  # fmt: skip
     return figure

@@ -14,6 +14,7 @@ from quietblade.results.store import RunFolder
 from quietblade.typing import AnyArray, Progress, silent
 from quietblade.view import (
     bands,
+    bodies,
     directivity,
     far_spectra,
     losses,
@@ -78,27 +79,18 @@ def draw_joint_figures(
         The files.
     """
     results = [folder.load() for folder in folders]
-    strains = [result.static.max_film_shear_strain for result in results]
+    blades = {f: result for f, result in zip(folders, results, strict=True) if result.static}
+    strains = [result.steady.max_film_shear_strain for result in blades.values()]
     largest = float(np.nanmax(strains)) if np.any(np.isfinite(strains)) else None
-    drawings: dict[str, Drawing] = {
-        **_section_drawings(results),
-        "sound-power-at-rest": lambda: spectra.draw_sound_power_at_rest(results),
-    }
-    for folder, result in zip(folders, results, strict=True):
+    drawings = _section_drawings(list(blades.values())) if blades else {}
+    drawings["sound-power-at-rest"] = lambda: spectra.draw_sound_power_at_rest(results)
+    for folder, result in blades.items():
         drawings[f"deformed-{folder.root.resolve().name}"] = _deformed(folder, result, largest)
     return _save(out, drawings, progress, formats)
 
 
 def _drawings(folder: RunFolder, result: Result) -> Mapping[str, Drawing]:
-    drawings: dict[str, Drawing] = {
-        "mesh": lambda: scenes.draw_mesh(folder),
-        "displacement": lambda: scenes.draw_displacement(folder, result),
-        "deformed": _deformed(folder, result, None),
-        "stress": lambda: scenes.draw_stress(folder, result),
-        **_section_drawings([result]),
-        "cavitation": lambda: sections.draw_cavitation(result),
-        "convergence": lambda: sections.draw_convergence(result),
-    }
+    drawings = _body(folder) if result.static is None else _steady(folder, result)
     if result.campbell.name:
         drawings["campbell"] = lambda: draw_campbell(result)
     if not result.configurations:
@@ -114,6 +106,23 @@ def _drawings(folder: RunFolder, result: Result) -> Mapping[str, Drawing]:
     if result.moduli.name:
         drawings["moduli"] = lambda: losses.draw_moduli(result)
     return drawings | _far_field(result) | dict(transfer.drawings(result))
+
+
+def _body(folder: RunFolder) -> dict[str, Drawing]:
+    return {"mesh": lambda: bodies.draw_body_mesh(folder)}
+
+
+def _steady(folder: RunFolder, result: Result) -> dict[str, Drawing]:
+    """Figures of a blade and of its steady load."""
+    return {
+        "mesh": lambda: scenes.draw_mesh(folder),
+        "displacement": lambda: scenes.draw_displacement(folder, result),
+        "deformed": _deformed(folder, result, None),
+        "stress": lambda: scenes.draw_stress(folder, result),
+        **_section_drawings([result]),
+        "cavitation": lambda: sections.draw_cavitation(result),
+        "convergence": lambda: sections.draw_convergence(result),
+    }
 
 
 def _far_field(result: Result) -> dict[str, Drawing]:

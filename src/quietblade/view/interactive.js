@@ -50,7 +50,7 @@
         });
       }
     }
-    return { span: scene.span, shows };
+    return { span: scene.span, scale: scene.scale, shows };
   }
 
   function corners(flat) {
@@ -100,9 +100,9 @@
       return;
     }
     element("view3d-told").textContent =
-      `${show.body.configuration}, mode ${show.name}: ${show.frequency.toFixed(2)} Hz, loss factor ` +
-      `${show.loss.toExponential(1)}. A mode has no size of its own: its largest displacement is ` +
-      `drawn as ${mm.toFixed(0)} mm (${(100 * mm / span).toFixed(0)} % of the span), in slow motion.`;
+      `${show.body.configuration}, mode ${show.name}: ${Math.abs(show.frequency).toFixed(2)} Hz, ` +
+      `${show.loss === null ? "rigid" : `loss factor ${show.loss.toExponential(1)}`}. A mode has no size of its own: its largest displacement is ` +
+      `drawn as ${mm.toFixed(0)} mm (${(100 * mm / span).toFixed(0)} % of the ${scale}), in slow motion.`;
   }
 
   /* Axes that hold every phase, with one scale. */
@@ -147,7 +147,7 @@
   async function choose() {
     show = shows.find((candidate) => candidate.key === controls.motion.value);
     controls.size.value = steady() ? 0.5 : USUAL / MOST;
-    controls.size.title = steady() ? "against the true displacement" : "against the span";
+    controls.size.title = steady() ? "against the true displacement" : `against the ${scale}`;
     const rest = atRest(), now = moved(show, size(), 0), { blade, film } = show.body;
     const transparent = controls.film.checked && film.i.length > 0;
     const axes = ([x, y, z]) => ({ x, y, z });
@@ -188,7 +188,7 @@
     const titles = { C0: "Wet modes at rest (C0)", C1: "Wet modes under load (C1)" };
     const groups = {};
     for (const each of shows) {
-      const option = new Option(each.name ? `${each.name}, ${each.frequency.toFixed(1)} Hz (${
+      const option = new Option(each.name ? `${each.name}, ${Math.abs(each.frequency).toFixed(1)} Hz (${
         each.body.configuration})` : "Deformation under load (C1)", each.key);
       if (!each.name) { controls.motion.append(option); continue; }
       const name = each.body.configuration;
@@ -223,13 +223,13 @@
     });
   }
 
-  let span, shows;
+  let span, scale, shows;
   try {
     if (!document.createElement("canvas").getContext("webgl")) throw new Error("no WebGL here");
     const library = document.createElement("script");
     library.textContent = await (await unpacked("view3d-library")).text();
     document.head.append(library);
-    ({ span, shows } = readScene(await (await unpacked("view3d-numbers")).arrayBuffer()));
+    ({ span, scale, shows } = readScene(await (await unpacked("view3d-numbers")).arrayBuffer()));
     box.hidden = false; // plotly measures the place it gets
     fill();
     connect();

@@ -11,6 +11,7 @@ from base64 import b64encode
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from importlib.resources import files
+from string import Template
 from typing import Any
 
 import numpy as np
@@ -40,12 +41,17 @@ def interactive_view(folder: RunFolder, result: Result) -> str:
         A file of fields is missing.
     """
     scene, numbers = packed(moving_surfaces(folder, result))
+    blade = result.static is not None
+    scene["scale"] = "span" if blade else "body's height"
+    axes = ": x rotor axis, y suction side, z span" if blade else ""
     parts = files("quietblade.view")
     # the text of a case may stand in a name; nothing in it may end the element
     told = json.dumps(scene).replace("<", "\\u003c")
     return "\n".join(
         (
-            parts.joinpath("interactive.html").read_text(encoding="utf-8").strip(),
+            Template(parts.joinpath("interactive.html").read_text(encoding="utf-8"))
+            .substitute(axes=axes)
+            .strip(),
             f'<script type="application/json" id="view3d-scene">{told}</script>',
             f'<script type="text/plain" id="view3d-numbers">{_text(numbers)}</script>',
             f'<script type="text/plain" id="view3d-library">{_library()}</script>',
@@ -88,7 +94,8 @@ def _motion(block: "_Block", motion: Motion) -> dict[str, Any]:
         "name": motion.name,
         "largest": 1e3 * largest,  # mm; of a mode its unit
         "frequency": motion.frequency if motion.name else None,
-        "loss": motion.loss_factor if motion.name else None,
+        # a rigid motion has none
+        "loss": motion.loss_factor if np.isfinite(motion.loss_factor) else None,
         "real": block.add(steps.real, "<i2"),
         # a mode without loss moves in one phase
         "imag": block.add(steps.imag, "<i2") if np.any(steps.imag) else None,

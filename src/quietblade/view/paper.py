@@ -118,11 +118,11 @@ def draw_lift(results: Mapping[str, Result]) -> Figure:
     """
     figure = new_figure(3.2)
     axes = figure.subplots()
-    first = next(iter(results.values())).static.sections
+    first = next(iter(results.values())).steady.sections
     rigid = first.lift_coefficient[state("rigid")]
     axes.plot(first.span_fraction, rigid, color=GREY, linewidth=1.1, label="rigid")
     for (name, result), color in zip(results.items(), (BLUE, VERMILION), strict=False):
-        curves = result.static.sections
+        curves = result.steady.sections
         for label, stroke in _PASSES.items():
             axes.plot(
                 curves.span_fraction,

@@ -177,12 +177,12 @@ def draw_algorithm(results: Mapping[str, Result]) -> Figure:
     axes.set(xlim=(0.0, WIDTH), ylim=(0.0, 2.9))
     axes.set_axis_off()
     first = next(iter(results.values()))
-    sections = len(first.static.sections.span_fraction)
+    sections = len(first.steady.sections.span_fraction)
     passes = ", ".join(
-        f"{name.lower()} {result.static.iterations}" for name, result in results.items()
+        f"{name.lower()} {result.steady.iterations}" for name, result in results.items()
     )
-    methods = ", ".join(dict.fromkeys(r.static.coupling_method for r in results.values()))
-    tolerance = first.static.tolerance
+    methods = ", ".join(dict.fromkeys(r.steady.coupling_method for r in results.values()))
+    tolerance = first.steady.tolerance
     _title(axes, 0.1, "Step 1: propulsion, steady and nonlinear", BLUE)
     _title(axes, 4.4, "Step 2: vibration, linear", VERMILION)
     start = _box(axes, (0.55, 2.14), (0.9, 0.3), "$u_1^0 = 0$", BLUE)

@@ -76,6 +76,8 @@ class Stage:
 
     def add(self, mesh: pv.DataSet, **options: Any) -> None:
         """Add a surface or lines; the options are those of ``pyvista.Plotter.add_mesh``."""
+        if mesh.n_points == 0:
+            return  # as of the sharp edges of a body that has none
         matt = {"ambient": 0.45, "diffuse": 0.6, "specular": 0.0, "show_scalar_bar": False}
         self.plotter.add_mesh(mesh, **{**matt, **options})
 

@@ -21,7 +21,15 @@ from quietblade.results.tables import summary_tables
 from quietblade.typing import Progress, silent
 from quietblade.view.figures import draw_figures
 from quietblade.view.interactive import POLICY, interactive_view
-from quietblade.view.report_order import CASE, SECTIONS, TRUST, VIEW, Section
+from quietblade.view.report_order import (
+    BODY_CAPTIONS,
+    BODY_VIEW,
+    CASE,
+    SECTIONS,
+    TRUST,
+    VIEW,
+    Section,
+)
 
 
 def render_report(
@@ -55,17 +63,21 @@ def render_report(
     ResultError
         A file of fields is missing.
     """
-    figures = _drawn(folder, progress)
+    place = BODY_VIEW if result.static is None else VIEW
+    figures = _drawn(folder, place, progress)
     view = interactive_view(folder, result) if interactive else ""
     summary = summarise(result)
     page = Template(files("quietblade.view").joinpath("report.html").read_text(encoding="utf-8"))
     given = {table.title: table for table in summary_tables(summary)}
     given |= {table.title: table for table in evidence_tables(result)}
     given |= {table.title: table for table in others}
+    captions = BODY_CAPTIONS if result.static is None else {}
     parts = []
     for section in (*SECTIONS, _rest(given, figures)):
         own = words if section.title == CASE else ()
-        parts.append(_section(section, (*own, *_chosen(section, given)), figures, view))
+        parts.append(
+            _section(section, (*own, *_chosen(section, given)), figures, {place: view}, captions)
+        )
     parts.append(f"<h3>Case file</h3>\n<pre>{escape(result.run.case_text)}</pre>")
     body = "\n".join(part for part in parts if part)
     return page.substitute(
@@ -78,9 +90,9 @@ def render_report(
     )
 
 
-def _drawn(folder: RunFolder, progress: Progress) -> dict[str, Path]:
+def _drawn(folder: RunFolder, place: str, progress: Progress) -> dict[str, Path]:
     figures = {file.stem: file for file in folder.figures.glob("*.png")}
-    if VIEW not in figures:
+    if place not in figures:
         figures = {file.stem: file for file in draw_figures(folder, progress)}
     return figures
 
@@ -102,15 +114,19 @@ def _chosen(section: Section, tables: Mapping[str, Table]) -> Iterable[Table]:
 
 
 def _section(
-    section: Section, tables: Sequence[Table], figures: Mapping[str, Path], view: str
+    section: Section,
+    tables: Sequence[Table],
+    figures: Mapping[str, Path],
+    views: Mapping[str, str],
+    captions: Mapping[str, str],
 ) -> str:
     pictures = [
-        _figure(figures[name], caption, view if name == VIEW else "")
+        _figure(figures[name], captions.get(name, caption), views.get(name, ""))
         for name, caption in section.figures.items()
         if name in figures
     ]
-    # the blade itself says first what its tables say in full
-    first = 1 if VIEW in section.figures else 0
+    # the body itself says first what its tables say in full
+    first = 1 if views.keys() & section.figures.keys() else 0
     parts = [*pictures[:first], *(_table(t, section.title) for t in tables), *pictures[first:]]
     return "\n".join([_heading(section.title), *parts]) if parts else ""
 

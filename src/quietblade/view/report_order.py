@@ -26,6 +26,16 @@ class Section:
 VIEW = "displacement"
 """Figure that stands where the interactive view cannot."""
 
+BODY_VIEW = "mode-shapes-C0"
+"""The same of a body that is no blade, which has no steady deformation."""
+
+BODY_CAPTIONS = {
+    "directivity-xy": "Directivity in the plane of x and y.",
+    "directivity-xz": "Directivity in the plane of x and z.",
+    "directivity-yz": "Directivity in the plane of y and z.",
+}
+"""Captions of a body that is no blade, where they are other ones."""
+
 CASE = "The case"
 """Section of the case in words, which do not come from the result."""
 
@@ -64,7 +74,7 @@ SECTIONS = (
             "Crossings of modes and blade rate",
         ),
         {
-            "mode-shapes-C0": "Wet modes at rest.",
+            BODY_VIEW: "Wet modes at rest.",
             "mode-shapes-C1": "Wet modes under load.",
             "campbell": "Wet modes under load over the speed of the shaft, with the blade rate's "
             "multiples as rays.",
@@ -118,7 +128,7 @@ SECTIONS = (
     Section(
         "Mesh",
         ("Cells and their quality", "Free unknowns of step 2"),
-        {"mesh": "Blade, film and mesh."},
+        {"mesh": "What is meshed, and the cells."},
     ),
     Section(
         TRUST,

@@ -32,10 +32,13 @@ from quietblade.view.render import (
 )
 from quietblade.view.style import DIVERGING, SEQUENTIAL, WIDTH, new_figure, styled
 
-_BLADE, _FILM, _EXCITED, _LINES = "#C9D3DC", "#E69F00", "#D55E00", "#30363C"
-_CELL_COLORS = {"tetra10": _BLADE, "pyramid13": "#56B4E9", "hexahedron20": _FILM}
+BLADE, EXCITED, LINES = "#C9D3DC", "#D55E00", "#30363C"
+"""Colours of a solid, of its excited part and of the edges of its cells."""
+
+_FILM = "#E69F00"
+_CELL_COLORS = {"tetra10": BLADE, "pyramid13": "#56B4E9", "hexahedron20": _FILM}
 _MODE_AMPLITUDE = 0.12  # largest displacement in a picture of a mode, over the span
-_COLUMNS = 3  # of the small pictures
+_COLUMNS, _ROUND_COLUMNS = 3, 5  # of the small pictures, and of those as wide as high
 _STRETCH, _SLAB = 3.0, 0.02  # of the cut: thickness, and half its length along the span [m]
 _FROM_CUT = View((-0.3, 0.5, 1.0), (0.0, 1.0, 0.0))
 
@@ -49,9 +52,9 @@ def draw_mesh(folder: RunFolder) -> Figure:
     heights = [WIDTH * image.shape[0] / image.shape[1] for image in (planform, surface, cut)]
     figure = new_figure(sum(heights) + 0.9)
     panels = figure.subplots(3, 1, height_ratios=heights)
-    _show(panels[0], planform, _planform_title(grid))
-    _show(panels[1], surface, "Surface mesh")
-    _show(panels[2], cut, _cut_title(grid))
+    show(panels[0], planform, _planform_title(grid))
+    show(panels[1], surface, "Surface mesh")
+    show(panels[2], cut, _cut_title(grid))
     return figure
 
 
@@ -66,14 +69,14 @@ def draw_deformed(folder: RunFolder, result: Result, largest: float | None = Non
     largest : float, optional
         Shear strain at the end of the colour scale, to compare blades; by default the run's own.
     """
-    own = result.static.max_film_shear_strain
+    own = result.steady.max_film_shear_strain
     strained = np.isfinite(own)
     limits = (0.0, 100.0 * (own if largest is None else largest) if strained else 1.0)
     (image,) = cropped([deformed_picture(folder, limits)])
     figure = new_figure(1.15 + WIDTH * image.shape[0] / image.shape[1])
     axes = figure.subplots()
-    tip = ", ".join(f"{1e3 * u:z.1f}" for u in result.static.tip_displacement)
-    _show(axes, image, f"{result.title}: rigid and deformed\nTip displacement ({tip}) mm, to scale")
+    tip = ", ".join(f"{1e3 * u:z.1f}" for u in result.steady.tip_displacement)
+    show(axes, image, f"{result.title}: rigid and deformed\nTip displacement ({tip}) mm, to scale")
     if strained:
         strain_bar(figure, [axes], limits)
     return figure
@@ -90,7 +93,7 @@ def draw_deformed_blades(folders: Mapping[str, RunFolder], results: Mapping[str,
     folders, results : mappings
         Of the runs, by the name that the picture gets.
     """
-    largest = max(result.static.max_film_shear_strain for result in results.values())
+    largest = max(result.steady.max_film_shear_strain for result in results.values())
     limits = (0.0, 100.0 * largest)
     boxes = np.array([_reach(folder) for folder in folders.values()])
     bounds = np.where([True, False] * 3, boxes.min(axis=0), boxes.max(axis=0)).tolist()
@@ -100,8 +103,8 @@ def draw_deformed_blades(folders: Mapping[str, RunFolder], results: Mapping[str,
     figure = new_figure(0.9 + sum(heights) + 0.3 * len(heights))
     panels = list(np.atleast_1d(figure.subplots(len(heights), 1, height_ratios=heights)))
     for panel, (name, result), picture in zip(panels, results.items(), pictures, strict=True):
-        gamma = 100.0 * result.static.max_film_shear_strain
-        _show(panel, picture, f"{name}: largest shear strain of the film {gamma:.2g} %")
+        gamma = 100.0 * result.steady.max_film_shear_strain
+        show(panel, picture, f"{name}: largest shear strain of the film {gamma:.2g} %")
     strain_bar(figure, panels, limits)
     return figure
 
@@ -114,10 +117,10 @@ def deformed_picture(
     deformed = moved(rigid, field_values(rigid, "displacement"))
     film = region(deformed, "film")
     stage = Stage((2400, 1500))
-    stage.add(curved_surface(rigid), color=_BLADE, opacity=0.15)
-    stage.add(sharp_edges(rigid), color=_LINES, line_width=1.5)
+    stage.add(curved_surface(rigid), color=BLADE, opacity=0.15)
+    stage.add(sharp_edges(rigid), color=LINES, line_width=1.5)
     stage.add(curved_surface(deformed), color="#5B7083", opacity=0.25)
-    stage.add(sharp_edges(deformed), color=_LINES, line_width=2.5)
+    stage.add(sharp_edges(deformed), color=LINES, line_width=2.5)
     if film.n_cells:
         film.point_data["percent"] = 100.0 * field_values(film, "film_shear_strain")
         stage.add(curved_surface(film), scalars="percent", cmap=SEQUENTIAL, clim=limits)
@@ -153,14 +156,14 @@ def draw_displacement(folder: RunFolder, result: Result) -> Figure:
     deformed.point_data["millimetre"] = millimetre
     limits = (0.0, float(millimetre.max()) or 1.0)
     stage = Stage((2400, 1500))
-    stage.add(curved_surface(rigid), color=_BLADE, opacity=0.35)
-    stage.add(sharp_edges(rigid), color=_LINES, line_width=1.5)
+    stage.add(curved_surface(rigid), color=BLADE, opacity=0.35)
+    stage.add(sharp_edges(rigid), color=LINES, line_width=1.5)
     stage.add(curved_surface(deformed), scalars="millimetre", cmap=SEQUENTIAL, clim=limits)
-    stage.add(sharp_edges(deformed), color=_LINES, line_width=1.5)
+    stage.add(sharp_edges(deformed), color=LINES, line_width=1.5)
     (image,) = cropped([stage.picture(FROM_UPSTREAM)])
     figure = new_figure(1.15 + WIDTH * image.shape[0] / image.shape[1])
     axes = figure.subplots()
-    _show(axes, image, f"{result.title}: deformed and at rest\nLargest displacement "
+    show(axes, image, f"{result.title}: deformed and at rest\nLargest displacement "
           f"{millimetre.max():.1f} mm, to scale")  # fmt: skip
     bar = _color_bar(figure, axes, limits, SEQUENTIAL, location="bottom", shrink=0.6, aspect=40)
     bar.set_label("Displacement from C0 to C1 [mm]")
@@ -177,14 +180,14 @@ def draw_stress(folder: RunFolder, result: Result) -> Figure:
     blade.point_data["megapascal"] = stress
     stage = Stage((2400, 1500))
     stage.add(curved_surface(blade), scalars="megapascal", cmap=SEQUENTIAL, clim=limits)
-    stage.add(sharp_edges(blade), color=_LINES, line_width=1.5)
+    stage.add(sharp_edges(blade), color=LINES, line_width=1.5)
     (image,) = cropped([stage.picture(FROM_UPSTREAM)])
     figure = new_figure(1.15 + WIDTH * image.shape[0] / image.shape[1])
     axes = figure.subplots()
-    table = result.static.stress
+    table = result.steady.stress
     row = table.region.index("blade")
     x, y, z = table.von_mises_place[row]
-    _show(
+    show(
         axes, image,
         f"{result.title}: von Mises stress, deformed to scale\nLargest "
         f"{1e-6 * table.von_mises[row]:.0f} MPa at ({x:.3f}, {y:.3f}, {z:.3f}) m of the blade at "
@@ -211,15 +214,19 @@ def draw_mode_shapes(
         What `mode_pictures` makes of that configuration.
     """
     modes = result.configurations[configuration].modes
-    rows = max(1, -(-len(modes.name) // _COLUMNS))
     shape = next((p.shape for p in pictures.values()), (1, 2))
-    figure = new_figure(0.5 + rows * (0.2 + 0.9 * WIDTH / _COLUMNS * shape[0] / shape[1]))
-    panels = figure.subplots(rows, _COLUMNS, squeeze=False).ravel()
+    slim = shape[1] > 1.5 * shape[0]
+    columns, head = (_COLUMNS, 0.2) if slim else (_ROUND_COLUMNS, 0.5)
+    first, then = ("  ", ", ") if slim else ("\n", "\n")
+    rows = max(1, -(-len(modes.name) // columns))
+    figure = new_figure(0.5 + rows * (head + 0.9 * WIDTH / columns * shape[0] / shape[1]))
+    panels = figure.subplots(rows, columns, squeeze=False).ravel()
     for panel in panels:
         panel.set_axis_off()
     numbers = zip(modes.name, modes.frequency, modes.loss_factor, strict=True)
     for panel, (name, frequency, loss) in zip(panels, numbers, strict=False):
-        _show(panel, pictures[name], f"{name}  {frequency:.1f} Hz, $\\eta$ = {loss:.1e}")
+        told = f"$\\eta$ = {loss:.1e}" if np.isfinite(loss) else "rigid motion"
+        show(panel, pictures[name], f"{name}{first}{frequency:z.1f} Hz{then}{told}")
     bar = _color_bar(figure, list(panels), (-1.0, 1.0), DIVERGING, shrink=0.8, aspect=30)
     # as short as one row of pictures is low
     bar.set_label("Displacement normal\nto the surface over\nthe largest [–]")
@@ -242,8 +249,9 @@ def _mode_picture(grid: pv.UnstructuredGrid, name: str) -> AnyArray:
     solid.point_data["shape"] = shape / np.max(np.linalg.norm(shape, axis=1))
     surface = curved_surface(solid)
     motion, normal = surface.point_data["shape"], surface.point_data["Normals"]
+    hollow = region(grid, "body").n_cells > 0
     # of either side the normal that points to the suction side, so that both show one colour
-    upwards = normal * np.sign(normal[:, 1:2])
+    upwards = normal if hollow else normal * np.sign(normal[:, 1:2])
     surface.point_data["across"] = np.sum(motion * upwards, axis=1)
     amplitude = _MODE_AMPLITUDE * float(np.ptp(grid.points[:, 2]))
     surface.points = surface.points + amplitude * motion
@@ -259,20 +267,20 @@ def _planform(grid: pv.UnstructuredGrid) -> AnyArray:
     film = region(grid, "film")
     if film.n_cells:
         stage.add(curved_surface(film), color=_FILM)
-        stage.add_lines(outer_edges(film), FROM_ABOVE, color=_LINES, line_width=1.5)
-    stage.add(curved_surface(solid_of(grid)), color=_BLADE, opacity=0.35)
-    stage.add(sharp_edges(solid_of(grid)), color=_LINES, line_width=2.5)
+        stage.add_lines(outer_edges(film), FROM_ABOVE, color=LINES, line_width=1.5)
+    stage.add(curved_surface(solid_of(grid)), color=BLADE, opacity=0.35)
+    stage.add(sharp_edges(solid_of(grid)), color=LINES, line_width=2.5)
     excited = region(grid, "excited")
     if excited.n_cells:
-        stage.add(excited.extract_surface(algorithm="dataset_surface"), color=_EXCITED)
+        stage.add(excited.extract_surface(algorithm="dataset_surface"), color=EXCITED)
     return stage.picture(FROM_ABOVE)
 
 
 def _surface_mesh(grid: pv.UnstructuredGrid) -> AnyArray:
     stage = Stage((2400, 700))
     solid = solid_of(grid)
-    stage.add(curved_surface(solid), color=_BLADE)
-    stage.add_lines(outer_edges(solid), FROM_ABOVE, color=_LINES, line_width=2.0)
+    stage.add(curved_surface(solid), color=BLADE)
+    stage.add_lines(outer_edges(solid), FROM_ABOVE, color=LINES, line_width=2.0)
     return stage.picture(FROM_ABOVE)
 
 
@@ -287,7 +295,7 @@ def _cut(grid: pv.UnstructuredGrid) -> AnyArray:
         part = slab.extract_cells(np.flatnonzero(slab.celltypes == CELL_TYPES[kind]))
         if part.n_cells:
             stage.add(curved_surface(part), color=color)
-            stage.add_lines(outer_edges(part), _FROM_CUT, color=_LINES, line_width=2.5)
+            stage.add_lines(outer_edges(part), _FROM_CUT, color=LINES, line_width=2.5)
     return stage.picture(_FROM_CUT)
 
 
@@ -316,7 +324,8 @@ def _color_bar(
     return figure.colorbar(ScalarMappable(Normalize(*limits), colors), ax=axes, **options)
 
 
-def _show(axes: Axes, image: AnyArray, title: str) -> None:
+def show(axes: Axes, image: AnyArray, title: str) -> None:
+    """Put a picture and its title into a panel."""
     axes.imshow(image, interpolation="antialiased")
     axes.set_anchor("W")
     axes.set_axis_off()

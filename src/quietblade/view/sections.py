@@ -85,7 +85,7 @@ def draw_cavitation(result: Result) -> Figure:
     """Suction along the span of each state, against the cavitation number at the top of a turn."""
     figure, axes = _spanwise("Cavitation", r"$-C_{p,\min}$ and $\sigma$ [–]")
     _plot(axes, [result], lambda static: static.sections.suction)
-    curves = result.static.sections
+    curves = result.steady.sections
     axes.plot(
         curves.span_fraction, curves.cavitation_number[state("coupled")], color=GREY,
         linestyle=(0, (1, 1)), label=r"$\sigma$, coupled",
@@ -100,8 +100,8 @@ def draw_cavitation(result: Result) -> Figure:
 @styled
 def draw_convergence(result: Result) -> Figure:
     """Change of the displacement pass by pass, with the tip displacement and the lift."""
-    history, tolerance = result.static.history, result.static.tolerance
-    passes = np.arange(1, result.static.iterations + 1)
+    history, tolerance = result.steady.history, result.steady.tolerance
+    passes = np.arange(1, result.steady.iterations + 1)
     figure = new_figure(2.6)
     left, right = figure.subplots(1, 2)
     left.semilogy(passes, history.relative_change, "o-", color=BLUE, markersize=3.5, label="change")
@@ -112,11 +112,11 @@ def draw_convergence(result: Result) -> Figure:
         tolerance, color=GREY, linestyle="--", linewidth=1.0, label=f"tolerance {tolerance:.0e}"
     )
     left.legend(loc="upper right")
-    verdict = "converged" if result.static.converged else "NOT converged"
+    verdict = "converged" if result.steady.converged else "NOT converged"
     left.set(
         xlabel="Pass of the coupling [–]",
         ylabel=r"Relative to $\|u\|$ [–]",
-        title=f"Coupling by {result.static.coupling_method}, {verdict}",
+        title=f"Coupling by {result.steady.coupling_method}, {verdict}",
     )
     right.plot(passes, 1e3 * history.tip_displacement[:, 1], "o-", color=BLUE, markersize=3.5)
     right.set(
@@ -138,13 +138,13 @@ def draw_convergence(result: Result) -> Figure:
 def _members(results: Sequence[Result]) -> Iterator[tuple[str, StaticResult, int, Stroke]]:
     if len(results) == 1:
         for name in LABELS["state"]:
-            if np.isnan(results[0].static.lift[state(name)]):
+            if np.isnan(results[0].steady.lift[state(name)]):
                 continue  # it could not be computed
-            yield _NAMES[name], results[0].static, state(name), STATE[name]
+            yield _NAMES[name], results[0].steady, state(name), STATE[name]
         return
-    yield "rigid", results[0].static, state("rigid"), STATE["rigid"]
+    yield "rigid", results[0].steady, state("rigid"), STATE["rigid"]
     for result, stroke in zip(results, SERIES, strict=False):
-        yield result.blade or result.title, result.static, state("coupled"), stroke
+        yield result.blade or result.title, result.steady, state("coupled"), stroke
 
 
 def _spanwise(title: str, label: str) -> tuple[Figure, Axes]:

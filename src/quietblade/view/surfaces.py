@@ -62,7 +62,7 @@ class MovingSurface:
 
 
 def moving_surfaces(folder: RunFolder, result: Result) -> tuple[MovingSurface, ...]:
-    """Surface of a run with its steady deformation, and one a configuration with its modes.
+    """Surface of a blade with its steady deformation, and one a configuration with its modes.
 
     Raises
     ------
@@ -70,7 +70,7 @@ def moving_surfaces(folder: RunFolder, result: Result) -> tuple[MovingSurface, .
         A file of fields is missing.
     """
     modes = (mode_surface(folder, result, name) for name in result.configurations)
-    return steady_surface(folder), *modes
+    return *((steady_surface(folder),) if result.static else ()), *modes
 
 
 def steady_surface(folder: RunFolder) -> MovingSurface:

@@ -14,9 +14,13 @@ PRESETS: Mapping[str, str] = MappingProxyType(
         "paper-composite": "the woven carbon blade of the two-step paper",
         "hydrofoil": "a fixed hydrofoil of a water-tunnel experiment",
         "twisted": "a twisted, swept and cambered blade of bronze with a film",
+        "sphere": "a spherical shell of steel in water, with an exact solution",
     }
 )
 """Name and one line about each."""
+
+BLADES = tuple(name for name in PRESETS if name != "sphere")
+"""Those of blades."""
 
 
 def preset_text(name: str) -> str:
