@@ -211,6 +211,14 @@ def test_where_the_power_goes_is_told_for_the_band_and_each_peak() -> None:
     assert "10.0 degC" in text
 
 
+def test_a_configuration_that_was_not_computed_has_no_columns() -> None:
+    result = make_result("composite")
+    rest = replace(result, configurations={"C0": result.configurations["C0"]})
+    heads = [table.columns for table in summary_tables(summarise(rest))]
+    assert ("Load", "kind", "amplitude", "C0 [dB]") in heads
+    assert not any("C1" in head for table in heads for head in table)
+
+
 def test_without_models_there_is_no_table_of_moduli() -> None:
     result = make_result()
     table = result.moduli

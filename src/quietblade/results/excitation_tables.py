@@ -22,7 +22,8 @@ def excitation_table(summary: Summary) -> Table:
         f"{sound.signal}; the largest amplitude in the band; levels of the mean power over the "
         f"band of each load alone, dB re {sound.level_reference}"
     )
-    return Table("Excitation", ("Load", "kind", "amplitude", "C0 [dB]", "C1 [dB]"), rows, note)
+    heads = ("Load", "kind", "amplitude", "C0 [dB]", "C1 [dB]")
+    return Table("Excitation", heads, rows, note).without_empty_columns()
 
 
 def transfer_table(summary: Summary) -> Table:
@@ -52,7 +53,8 @@ def transfer_table(summary: Summary) -> Table:
     if "shaft" in transfer.functions:
         means = (number(f.mean_shaft_db, ".1f") for f in figures)
         rows.append((f"Mean power into the shaft [dB re {reference}]", *means))
-    return Table("Transfer functions", ("Largest in the band", "C0", "C1"), tuple(rows))
+    heads = ("Largest in the band", "C0", "C1")
+    return Table("Transfer functions", heads, tuple(rows)).without_empty_columns()
 
 
 def _of(figures: TransferFigures, key: str, name: str = "") -> str:

@@ -152,6 +152,8 @@ def _modes(summary: Summary) -> Table:
     rows = [_mode_row(rest, loaded.pop(rest.partner, None)) for rest in summary.modes.C0]
     rows += [_mode_row(None, mode) for mode in loaded.values()]
     sound = summary.sound_power
+    levels = {"C0": sound.C0_mean_db, "C1": sound.C1_mean_db}
+    means = [f"{name} {mean:.1f}" for name, mean in levels.items() if mean is not None]
     note = ""
     if sound.radiation_condition:
         note = (
@@ -159,12 +161,12 @@ def _modes(summary: Summary) -> Table:
             f"{sound.radiation_condition}, "
             f"R = {number(sound.outer_radius_m)} m, "
             f"kR = {number(sound.kr_min, '.2f')} to {number(sound.kr_max, '.2f')}; level of the "
-            f"mean power over the band C0 {number(sound.C0_mean_db, '.1f')}, "
-            f"C1 {number(sound.C1_mean_db, '.1f')}"
+            f"mean power over the band {', '.join(means)}"
         )
     heads = ("Mode", "C0 [Hz]", "C1 [Hz]", "shift", "loss C0", "loss C1", "MAC",
              "C0 [dB]", "C1 [dB]")  # fmt: skip
-    return Table("Wet modes and peaks of the sound power", heads, tuple(rows), note)
+    table = Table("Wet modes and peaks of the sound power", heads, tuple(rows), note)
+    return table if len(means) > 1 else table.without_empty_columns()
 
 
 def _mode_row(rest: ModeSummary | None, loaded: ModeSummary | None) -> tuple[str, ...]:
