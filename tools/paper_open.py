@@ -102,8 +102,9 @@ def _movers(runs: PaperRuns, file: Path) -> Iterator[str]:
     """Largest changes of each claim's figure, one choice at a time."""
     with file.open(encoding="utf-8", newline="") as lines:
         every = [row for row in csv.DictReader(lines) if row["change"]]
-    yield "One choice is changed at a time, about the start of the search, on a coarse mesh."
-    yield f"Named are the {_TOLD} that move a claim's figure most, and by how much.\n"
+    yield "One choice is changed at a time, about the start of the search, on a coarse mesh, which"
+    yield "is too stiff: what counts are the changes. Named are the"
+    yield f"{_TOLD} choices that move a claim's figure most, and by how much.\n"
     rows = []
     for blade in BLADES:
         for claim in judge_claims(runs.result(f"{blade}-{runs.main}"), blade):

@@ -142,7 +142,7 @@ def _misses(
 
 def _tried(value: str, met: str) -> str:
     count, _, of = met.partition(" of ")
-    return f"; closest of {of} other choices: {value}, {'none' if count == '0' else count} met it"
+    return f"; closest of {of} other runs: {value}, {'none' if count == '0' else count} met it"
 
 
 # --- loss --------------------------------------------------------------------------------------
