@@ -226,7 +226,8 @@ def draw_mode_shapes(
     numbers = zip(modes.name, modes.frequency, modes.loss_factor, strict=True)
     for panel, (name, frequency, loss) in zip(panels, numbers, strict=False):
         told = f"$\\eta$ = {loss:.1e}" if np.isfinite(loss) else "rigid motion"
-        show(panel, pictures[name], f"{name}{first}{frequency:z.1f} Hz{then}{told}")
+        digits = 1 if frequency < 1000.0 else 0  # as wide as a picture
+        show(panel, pictures[name], f"{name}{first}{frequency:z.{digits}f} Hz{then}{told}")
     bar = _color_bar(figure, list(panels), (-1.0, 1.0), DIVERGING, shrink=0.8, aspect=30)
     # as short as one row of pictures is low
     bar.set_label("Displacement normal\nto the surface over\nthe largest [–]")
