@@ -78,7 +78,7 @@ BAD: list[tuple[str, str, str, tuple[str, ...]]] = [
     ('ply_angle = "45 deg"', "ply_angle = 45", "materials.woven.ply_angle",
      ("bare number", "an angle", '"8 deg"')),
     ('rotation = "0.58 rad/s"', 'rotation = "0.58 Hz"', "flow.rotation",
-     ("a frequency where an angular speed is needed", '"0.58 rad/s"')),
+     ("a frequency where an angular speed is needed", '"60 rpm"')),
     ('band = ["100 Hz", "200 Hz"]', 'band = [100, "200 Hz"]', "acoustics.band[0]",
      ("bare number", '"100 Hz"')),
     ('values = ["250 mm", "75 mm"]', 'values = ["250 mm", 0.075]', "blade.chord.values[1]",
@@ -105,6 +105,8 @@ BAD: list[tuple[str, str, str, tuple[str, ...]]] = [
      ("inf at s = 0", "finite")),
     ("thickness = 0.06", 'thickness = 0.06\nrake = { formula = "0.1*s" }', "blade.rake",
      ("formula has no unit", 'unit = "m"')),
+    ("thickness = 0.06", 'thickness = 0.06\nblade_angle = { formula = "8 - 10*s" }',
+     "blade.blade_angle", ("formula has no unit", 'unit = "deg"')),
     ("thickness = 0.06", 'thickness = 0.06\nrake = { formula = "s", unit = "s" }',
      "blade.rake.unit", ("a length is needed",)),
     # impossible values

@@ -75,7 +75,7 @@ def test_the_same_length_in_two_units_is_the_same_number() -> None:
         ("5 kg", LENGTH, ("a mass where", "a length is needed")),
         ("5 mol", LENGTH, ('"mol"', "a length is needed")),
         ("5 m", ANGLE, ("a length where an angle",)),
-        ("10 Hz", ANGULAR_SPEED, ("a frequency where an angular speed", "rad/s")),
+        ("10 Hz", ANGULAR_SPEED, ("a frequency where an angular speed", "60 rpm")),
         ("10 rpm", FREQUENCY, ("an angular speed where a frequency", "Hz")),
         ("65 gpa", MODULUS, ("not a known unit", 'Did you mean "GPa"')),
         ("65 furlongs/gallon^2", MODULUS, ("a modulus is needed",)),

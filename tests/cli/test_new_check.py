@@ -231,6 +231,7 @@ def test_check_predicts_size_cost_and_assumptions(capsys: pytest.CaptureFixture[
     for fragment in (
         "in step 1", "in step 2", "GB, within a factor", "modes C1", "tip speed", "Mach",
         "times the rotation rate", "stall near", "cavitation number", "mm at rest", "DOUBTFUL",
+        "1 blade, diameter 2.2 m, V/nD 2.27",
     ):  # fmt: skip
         assert fragment in seen.out
     assert "strip theory" in seen.err

@@ -9,12 +9,16 @@ import pytest
 from quietblade.errors import GeometryError
 from quietblade.flow import (
     DeformedSections,
+    Environment,
     MomentumInflow,
     PanelSections,
     StripInflow,
+    inception_depth,
+    inception_ship_speed,
     integrate,
     section_frames,
 )
+from quietblade.flow.cavitation import is_judged
 from quietblade.flow.momentum import buhl, prandtl_factor
 from quietblade.flow.sections import AXIS
 from quietblade.typing import FloatArray
@@ -61,6 +65,25 @@ def test_propeller_pushes_and_momentum_lowers_the_load(
     assert total.thrust < integrate(blade[0], strip).thrust
     assert np.all(induced.induced[1:-1] @ AXIS > 0.0)
     assert np.all(induced.alpha < strip.alpha)
+
+
+def test_an_end_without_lift_does_not_say_where_cavitation_begins(
+    blade: tuple[DeformedSections, PanelSections],
+) -> None:
+    sections, panels = blade
+    induced = model(0.6).loads(sections, panels)
+    judged = is_judged(induced)
+    assert judged[1:-1].all()
+    assert not judged[[0, -1]].any()
+    assert abs(induced.lift_coefficient[-1]) < 1e-2
+    water = Environment(depth=2.0)
+    depth = inception_depth(sections, induced, water)
+    speed = inception_ship_speed(sections, induced, water, 5.0)
+    assert np.all(np.isneginf(depth[[0, -1]]))
+    assert np.all(np.isposinf(speed[[0, -1]]))
+    assert np.all(np.isfinite(depth[1:-1]))
+    assert np.all(np.isfinite(speed[1:-1]))
+    assert is_judged(StripInflow(5.0, OMEGA).loads(sections, panels)).all()
 
 
 @pytest.mark.parametrize("advance", [-0.8, -0.3, 0.0, 0.05, 0.5, 0.9, 1.1, 1.3, 1.8, 4.0, 50.0])

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from quietblade.results.comparison import compare_summaries, comparison_table
+from quietblade.results.comparison import compare_summaries, comparison_table, exchanged_names
 from quietblade.results.documentation import json_schema, schema_page
 from quietblade.results.headline import summarise
 from quietblade.results.model import state, without_state
@@ -151,6 +151,18 @@ def test_repeated_changes_of_solver_are_counted() -> None:
     text = as_text("", summary_tables(changed))
     assert text.count("sweep: a -> b") == 1
     assert "first of 4 times" in text
+
+
+def test_exchanged_names_of_modes_are_noticed() -> None:
+    a = summarise(make_result("aluminium"))
+    assert exchanged_names(a, a) == ()
+    other = {"B5": "E2", "E2": "B5"}
+    modes = tuple(m.model_copy(update={"name": other.get(m.name, m.name)}) for m in a.modes.C0)
+    b = a.model_copy(update={"modes": a.modes.model_copy(update={"C0": modes})})
+    (notice,) = exchanged_names(a, b)
+    assert notice.where == "modes C0"
+    assert "B5 and E2" in notice.message
+    assert "crosswise" in notice.remedy
 
 
 def test_differences() -> None:

@@ -194,3 +194,18 @@ def test_a_doubtful_assumption_is_a_notice_with_value_limit_and_remedy(
 def test_a_blade_at_rest_turns_slowly_enough() -> None:
     found = judged(case_of("twisted", flow__rotation=0.0))
     assert found["the vibration is much faster than the rotation"].holds
+
+
+@pytest.mark.parametrize(
+    ("changes", "remedy"),
+    [
+        ({"flow__rotation": 12.0}, "Lower the incidence"),
+        ({"blade__blade_angle": 1.2}, "less 90 deg"),
+    ],
+)
+def test_the_pitch_angle_of_a_drawing_is_told_apart_from_too_much_load(
+    changes: dict[str, Any], remedy: str
+) -> None:
+    attached = judged(case_of("twisted", **changes))["the flow is attached"]
+    assert not attached.holds
+    assert remedy in attached.remedy

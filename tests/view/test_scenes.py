@@ -69,6 +69,16 @@ def test_the_planform_is_seen_to_scale(runs: tuple[RunFolder, ...]) -> None:
     assert dark[:, -4].mean() == pytest.approx(0.3, abs=0.03)
 
 
+@pytest.mark.parametrize("pitch", [-70.0, 0.0, 40.0])
+def test_a_pitched_blade_is_seen_on_its_face(runs: tuple[RunFolder, ...], pitch: float) -> None:
+    level = read_fields(runs[0].static_fields)
+    turned = scenes._with_level_chord(level.rotate_z(pitch, inplace=False))
+    own = scenes._with_level_chord(level)
+    np.testing.assert_allclose(np.ptp(turned.points, axis=0), np.ptp(own.points, axis=0), rtol=1e-5)
+    # the upper side stays up, the leading edge in front
+    np.testing.assert_allclose(turned.points, own.points, atol=1e-6)
+
+
 def test_the_strain_is_on_one_scale(runs: tuple[RunFolder, ...]) -> None:
     result = make_result("aluminium")
     figure = scenes.draw_deformed(runs[0], result, largest=0.09)

@@ -6,7 +6,16 @@ from collections.abc import Mapping
 from types import MappingProxyType
 
 ARGUMENTS: Mapping[str, int] = MappingProxyType(
-    {"sin": 1, "cos": 1, "sqrt": 1, "exp": 1, "abs": 1, "minimum": 2, "maximum": 2}
+    {
+        "sin": 1,
+        "cos": 1,
+        "atan": 1,
+        "sqrt": 1,
+        "exp": 1,
+        "abs": 1,
+        "minimum": 2,
+        "maximum": 2,
+    }
 )
 """Functions and how many arguments they take."""
 

@@ -131,7 +131,7 @@ class Spanwise:
         if not isinstance(unit, str):
             raise wrong("is not a unit", f'Write unit = "{kind.unit}"', at=("unit",))
         if kind.unit and not unit.strip():
-            raise wrong("the formula has no unit", f'Add unit = "{kind.unit}"')
+            raise wrong("the formula has no unit", f'Add unit = "{kind.usual[0]}"')
         try:
             scale = convert_factor(unit, kind) if unit.strip() else 1.0
         except UnitError as problem:

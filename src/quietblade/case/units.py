@@ -53,7 +53,7 @@ class Kind:
 LENGTH = Kind("a length", "m", "250 mm", ("m", "cm", "mm", "µm"), 1e-7, 1e4)
 ANGLE = Kind("an angle", "rad", "8 deg", ("deg", "rad"), 0.0, 1e2)
 SPEED = Kind("a speed", "m/s", "5 m/s", ("m/s", "km/h", "knot"), 1e-6, 1e5)
-ANGULAR_SPEED = Kind("an angular speed", "rad/s", "0.58 rad/s", ("rad/s", "rpm"), 1e-9, 1e5)
+ANGULAR_SPEED = Kind("an angular speed", "rad/s", "60 rpm", ("rad/s", "rpm", "rev/s"), 1e-9, 1e5)
 FREQUENCY = Kind("a frequency", "Hz", "100 Hz", ("Hz", "kHz"), 1e-4, 1e8)
 PRESSURE = Kind("a pressure", "Pa", "101.3 kPa", ("Pa", "kPa", "MPa", "GPa", "bar"), 1e-9, 1e12)
 MODULUS = Kind("a modulus", "Pa", "65 GPa", ("Pa", "kPa", "MPa", "GPa"), 1e-3, 1e14)

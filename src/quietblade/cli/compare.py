@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from quietblade.cli.common import ExitCode, show_json
+from quietblade.cli.common import ExitCode, show_json, show_notices
 from quietblade.cli.tables import show_tables
 
 
@@ -22,6 +22,7 @@ def compare(
     from quietblade.results.comparison import (  # noqa: PLC0415  # help must stay fast
         compare_summaries,
         comparison_table,
+        exchanged_names,
     )
     from quietblade.results.headline import summarise  # noqa: PLC0415
     from quietblade.results.store import RunFolder  # noqa: PLC0415
@@ -33,4 +34,5 @@ def compare(
     else:
         table = comparison_table(differences, (first.name, second.name))
         show_tables(f"{a.title} - {b.title}", [table])
+    show_notices(exchanged_names(a, b))
     return ExitCode.DONE

@@ -2,7 +2,7 @@
 """A case in words for people, and as data for programs."""
 
 from dataclasses import asdict
-from math import degrees
+from math import degrees, pi
 from typing import Any
 
 import numpy as np
@@ -108,6 +108,7 @@ def _flow_rows(case: Case, known: Preflight) -> Rows:
         ("water", _water(case)),
         ("speed", f"{flow.speed:.4g} m/s along the rotor axis"),
         ("rotation", f"{flow.rotation:.4g} rad/s ({in_unit(flow.rotation, 'rpm'):.4g} rpm)"),
+        ("rotor", _rotor(case)),
         ("incidence", f"{root:.3g} deg at the root, {tip:.3g} deg at the tip (undeformed)"),
         ("inflow", f"{flow.inflow}, {flow.sections} sections of {flow.section_nodes} nodes"),
         (
@@ -115,6 +116,15 @@ def _flow_rows(case: Case, known: Preflight) -> Rows:
             f"to {case.static.tolerance:g} in at most {case.static.max_iterations} iterations",
         ),
     ]
+
+
+def _rotor(case: Case) -> str:
+    diameter = 2.0 * (case.blade.hub_radius + case.blade.span)
+    count = f"{case.flow.blades} blade{'s' if case.flow.blades > 1 else ''}"
+    if case.flow.rotation == 0.0:
+        return f"{count}, fixed"
+    advance = 2.0 * pi * case.flow.speed / (abs(case.flow.rotation) * diameter)
+    return f"{count}, diameter {diameter:.4g} m, V/nD {advance:.3g} at the ship's speed"
 
 
 def _acoustics_rows(case: AnyCase, known: Surroundings) -> Rows:

@@ -13,10 +13,11 @@ from quietblade.flow.inflow import radii
 from quietblade.flow.loads import SectionLoads
 from quietblade.flow.panel import PanelSections
 from quietblade.flow.sections import DeformedSections
-from quietblade.typing import FloatArray
+from quietblade.typing import BoolArray, FloatArray
 
 _LARGEST_INCIDENCE = np.radians(25.0)
 _INCIDENCES = 1001
+_BARE = 0.02  # share of the greatest lift coefficient below which an end counts as without lift
 
 
 def cavitation_number(
@@ -60,6 +61,19 @@ def suction(loads: SectionLoads) -> FloatArray:
     return result
 
 
+def is_judged(loads: SectionLoads) -> BoolArray:
+    """Sections (M,) whose suction says where cavitation begins: all but a free end without lift.
+
+    Where an inflow model lets the lift vanish, at a tip or hub, the whole incidence of the last
+    section is undone at once: it stands at zero lift, with a suction at its nose that no tip has.
+    """
+    lift = np.abs(loads.lift_coefficient)
+    result: BoolArray = np.ones(len(lift), dtype=np.bool_)
+    if np.any(loads.induced):
+        result[[0, -1]] = lift[[0, -1]] >= _BARE * lift.max()
+    return result
+
+
 def inception_submergence(
     suction: ArrayLike, speed: ArrayLike, environment: Environment, density: float = 1000.0
 ) -> FloatArray:
@@ -92,10 +106,11 @@ def inception_depth(
 ) -> FloatArray:
     """Depth of the rotor axis above which each section cavitates at the top of its turn (M,) [m].
 
-    The blade is free of cavitation below the largest of them.
+    The blade is free of cavitation below the largest of them; minus infinity where a section is
+    not judged.
     """
     local = inception_submergence(suction(loads), loads.speed, environment, loads.density)
-    result: FloatArray = local + radii(sections)
+    result: FloatArray = np.where(is_judged(loads), local + radii(sections), -np.inf)
     return result
 
 
@@ -143,10 +158,15 @@ def inception_ship_speed(
     environment : Environment
     speed : float
         [m/s]
+
+    Returns
+    -------
+    array (M,)
+        Infinite where a section is not judged.
     """
     submergence = environment.depth - radii(sections)
     local = inception_speed(suction(loads), submergence, environment, loads.density)
-    moving = loads.speed > 0.0
+    moving = (loads.speed > 0.0) & is_judged(loads)
     result: FloatArray = np.where(
         moving, abs(speed) * local / np.where(moving, loads.speed, 1.0), np.inf
     )

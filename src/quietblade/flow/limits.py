@@ -7,7 +7,7 @@ They inform and change nothing: the loads remain those of attached inviscid flow
 import numpy as np
 
 from quietblade.errors import Notice
-from quietblade.flow.cavitation import cavitation_number, suction
+from quietblade.flow.cavitation import cavitation_number, is_judged, suction
 from quietblade.flow.environment import Environment
 from quietblade.flow.loads import SectionLoads
 from quietblade.flow.sections import DeformedSections
@@ -49,7 +49,7 @@ def notices(
         _notice(
             sections,
             "cavitation inception: suction -Cp_min above the cavitation number",
-            suction(loads),
+            np.where(is_judged(loads), suction(loads), -np.inf),
             cavitation_number(sections, loads, environment),
             "Go deeper or slower. A suction peak narrower than the boundary layer exaggerates",
         ),

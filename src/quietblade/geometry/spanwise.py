@@ -32,7 +32,7 @@ _BINARY: tuple[np.ufunc, ...] = (np.minimum, np.maximum)
 _FUNCTIONS = (
     {f.__name__: _with_arguments(1, f) for f in _UNARY}
     | {f.__name__: _with_arguments(2, f) for f in _BINARY}
-    | {"abs": _with_arguments(1, np.abs)}
+    | {"abs": _with_arguments(1, np.abs), "atan": _with_arguments(1, np.arctan)}
 )
 _OPERATORS: dict[type[ast.AST], Callable[..., Any]] = {
     ast.Add: np.add,

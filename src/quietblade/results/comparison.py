@@ -3,9 +3,13 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import combinations
 
+from quietblade.errors import Notice
 from quietblade.results.summary import ModeSummary, Summary
 from quietblade.results.table import Table, number
+
+_EXCHANGED = 0.25  # of the change by name, below which modes are rather taken as exchanged
 
 
 @dataclass(frozen=True)
@@ -56,6 +60,15 @@ def compare_summaries(first: Summary, second: Summary) -> tuple[Difference, ...]
     return (*_static(first, second), *_modes("C0", first, second), *_modes("C1", first, second))
 
 
+def exchanged_names(first: Summary, second: Summary) -> tuple[Notice, ...]:
+    """Notice pairs of modes of which each is all but where the other was.
+
+    Modes that mix bending and torsion may be named the other way round after a small change, and
+    a comparison by name then shows large differences that are none.
+    """
+    return tuple(n for c in ("C0", "C1") for n in _exchanged(c, first, second))
+
+
 def comparison_table(differences: tuple[Difference, ...], names: tuple[str, str]) -> Table:
     """Table of differences; ``names`` head the two columns of values."""
     rows = tuple(
@@ -90,11 +103,7 @@ def _static(first: Summary, second: Summary) -> Iterator[Difference]:
 
 
 def _modes(configuration: str, first: Summary, second: Summary) -> Iterator[Difference]:
-    a, b = (
-        # rigid motions have the frequency zero, up to rounding
-        {m.name: m for m in getattr(s.modes, configuration) if m.kind != "rigid"}
-        for s in (first, second)
-    )
+    a, b = _by_name(configuration, first), _by_name(configuration, second)
     references = [s.sound_power.level_reference for s in (first, second)]
     unit = f"dB re {references[0]}"
     alike = len(set(references)) == 1  # powers and their densities cannot be compared
@@ -105,6 +114,28 @@ def _modes(configuration: str, first: Summary, second: Summary) -> Iterator[Diff
         peak = _difference(f"{configuration} {name} peak level", unit, left, right, "peak_level_db")
         if alike and (peak.first is not None or peak.second is not None):
             yield peak
+
+
+def _by_name(configuration: str, summary: Summary) -> dict[str, ModeSummary]:
+    # rigid motions have the frequency zero, up to rounding
+    return {m.name: m for m in getattr(summary.modes, configuration) if m.kind != "rigid"}
+
+
+def _exchanged(configuration: str, first: Summary, second: Summary) -> Iterator[Notice]:
+    a, b = (
+        {n: m.frequency_hz for n, m in _by_name(configuration, summary).items() if m.frequency_hz}
+        for summary in (first, second)
+    )
+    for one, other in combinations([name for name in a if name in b], 2):
+        by_name = abs(a[one] - b[one]) + abs(a[other] - b[other])
+        crossed = abs(a[one] - b[other]) + abs(a[other] - b[one])
+        if crossed < _EXCHANGED * by_name:
+            yield Notice(
+                f"modes {configuration}",
+                f"{one} and {other} seem to have exchanged their names: {a[one]:.5g} and "
+                f"{a[other]:.5g} Hz here, {b[one]:.5g} and {b[other]:.5g} Hz there",
+                remedy="Compare these two crosswise, after a look at their shapes",
+            )
 
 
 def _difference(

@@ -12,7 +12,7 @@ import numpy as np
 from quietblade.case import AnyCase, Case
 from quietblade.errors import Notice
 from quietblade.flow import limits
-from quietblade.flow.cavitation import cavitation_number, suction
+from quietblade.flow.cavitation import cavitation_number, is_judged, suction
 from quietblade.flow.inflow import BladeFlow, strip_loads
 from quietblade.geometry import Blade
 from quietblade.study import translate
@@ -23,6 +23,13 @@ FAST_SPIN = 0.05
 
 SUBSONIC = 0.3
 """Mach number of the tip up to which water past it may be taken as incompressible."""
+
+_MISTAKEN = np.radians(45.0)  # incidence that no blade is meant to have
+_EASE = "Lower the incidence: the lift beyond stall is overestimated"
+_TURN = (
+    "The blade angle counts from the rotor axis: it is the pitch angle of a drawing, which counts "
+    "from the plane of rotation, less 90 deg. Look at the sense of flow.rotation too"
+)
 
 _STATIONS = 21  # sections of the undeformed blade
 _NODES = 161
@@ -152,13 +159,14 @@ def _slow_rotation(case: Case) -> Assumption:
         limit,
         ratio >= limit,
         "Raise the band's lower end: slower vibrations feel the Coriolis force, which is left out",
+        f"it is doubtful that {name}: lower end of the band over the rotation rate",
     )
 
 
 def _attached(case: Case, flow: BladeFlow) -> Assumption:
     limit = limits.stall_limit(flow.sections, flow.loads, translate.environment(case))
     value = np.abs(flow.loads.alpha)
-    k = _worst(value - limit)
+    k = _worst(np.where(is_judged(flow.loads), value - limit, -np.inf))
     place = _place(flow, k)
     return Assumption(
         "the flow is attached",
@@ -167,14 +175,15 @@ def _attached(case: Case, flow: BladeFlow) -> Assumption:
         float(value[k]),
         float(limit[k]),
         bool(value[k] <= limit[k]),
-        "Lower the incidence: the lift beyond stall is overestimated",
+        _TURN if value[k] > _MISTAKEN else _EASE,
+        f"it is doubtful that the flow is attached: incidence {place} [rad]",
     )
 
 
 def _dry(case: Case, flow: BladeFlow) -> Assumption:
     sigma = cavitation_number(flow.sections, flow.loads, translate.environment(case))
     peak = suction(flow.loads)
-    k = _worst(np.where(np.isfinite(sigma), peak - sigma, -np.inf))
+    k = _worst(np.where(np.isfinite(sigma) & is_judged(flow.loads), peak - sigma, -np.inf))
     said = f"suction -Cp {peak[k]:.3g} {_place(flow, k)}, cavitation number {sigma[k]:.3g}: margin "
     return Assumption(
         "the water does not cavitate",
@@ -183,6 +192,7 @@ def _dry(case: Case, flow: BladeFlow) -> Assumption:
         float(sigma[k]),
         bool(peak[k] <= sigma[k]),
         "Deeper (flow.depth) or slower; a peak narrower than the boundary layer exaggerates",
+        f"it is doubtful that the water does not cavitate: suction -Cp {_place(flow, k)}",
     )
 
 

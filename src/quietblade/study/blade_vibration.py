@@ -138,7 +138,7 @@ def solve_vibration(
         frames=frames,
     )
     found = find_modes(case, mesh, problem, progress)
-    fast = coriolis(case.flow.rotation, found.modes)
+    fast = coriolis(case.flow.rotation, found.modes, f"modes {name}")
     return replace(found, notices=(*noticed, *slow, *found.notices, *fast))
 
 
@@ -149,7 +149,7 @@ def displacement_field(mesh: Mesh, motion: MeshMotion) -> ngs.GridFunction:
     return field
 
 
-def coriolis(rotation: float, modes: WetModes) -> tuple[Notice, ...]:
+def coriolis(rotation: float, modes: WetModes, where: str = "modes") -> tuple[Notice, ...]:
     """Notice where the shaft [rad/s] turns fast against the lowest mode."""
     if len(modes.frequency) == 0 or modes.frequency[0] <= 0.0:
         return ()
@@ -157,4 +157,4 @@ def coriolis(rotation: float, modes: WetModes) -> tuple[Notice, ...]:
     if ratio <= FAST_SPIN:
         return ()
     remedy = "The modes of a blade that spins this fast need the Coriolis force"
-    return (Notice("modes", "2 omega_p / omega_1 is not small", ratio, FAST_SPIN, remedy),)
+    return (Notice(where, "2 omega_p / omega_1 is not small", ratio, FAST_SPIN, remedy),)

@@ -46,7 +46,7 @@ _FROM_CUT = View((-0.3, 0.5, 1.0), (0.0, 1.0, 0.0))
 @styled
 def draw_mesh(folder: RunFolder) -> Figure:
     """Planform with the film inside, surface mesh, and a cut through the film's layers."""
-    grid = read_fields(folder.static_fields)
+    grid = _with_level_chord(read_fields(folder.static_fields))
     planform, surface = cropped([_planform(grid), _surface_mesh(grid)])
     (cut,) = cropped([_cut(grid)])
     heights = [WIDTH * image.shape[0] / image.shape[1] for image in (planform, surface, cut)]
@@ -226,7 +226,8 @@ def draw_mode_shapes(
     numbers = zip(modes.name, modes.frequency, modes.loss_factor, strict=True)
     for panel, (name, frequency, loss) in zip(panels, numbers, strict=False):
         told = f"$\\eta$ = {loss:.1e}" if np.isfinite(loss) else "rigid motion"
-        show(panel, pictures[name], f"{name}{first}{frequency:z.1f} Hz{then}{told}")
+        digits = 1 if frequency < 1000.0 else 0  # as wide as a picture
+        show(panel, pictures[name], f"{name}{first}{frequency:z.{digits}f} Hz{then}{told}")
     bar = _color_bar(figure, list(panels), (-1.0, 1.0), DIVERGING, shrink=0.8, aspect=30)
     # as short as one row of pictures is low
     bar.set_label("Displacement normal\nto the surface over\nthe largest [–]")
@@ -262,6 +263,19 @@ def _mode_picture(grid: pv.UnstructuredGrid, name: str) -> AnyArray:
     return stage.picture(FROM_UPSTREAM, box.tolist())
 
 
+def _with_level_chord(grid: pv.UnstructuredGrid) -> pv.UnstructuredGrid:
+    """Turn a blade about its span until the chord at mid-span is level.
+
+    A blade with the pitch of a propeller would else be seen from its edge.
+    """
+    points = np.asarray(solid_of(grid).points)
+    near = np.abs(points[:, 2] - np.mean(grid.bounds[4:])) < _SLAB
+    section = points[near, :2] - points[near, :2].mean(axis=0)
+    chord = np.linalg.svd(section, full_matrices=False)[2][0]
+    x, y = chord * (1.0 if chord[0] > 0.0 else -1.0)
+    return grid.rotate_z(-np.degrees(np.arctan2(y, x)), inplace=False)
+
+
 def _planform(grid: pv.UnstructuredGrid) -> AnyArray:
     stage = Stage((2400, 700))
     film = region(grid, "film")
@@ -285,10 +299,9 @@ def _surface_mesh(grid: pv.UnstructuredGrid) -> AnyArray:
 
 
 def _cut(grid: pv.UnstructuredGrid) -> AnyArray:
-    """Cells of a slice at mid-span, so that the layers are seen from its end."""
+    """Cells of a slice, so that the layers are seen from its end."""
     heights = grid.cell_centers().points[:, 2]
-    middle = float(np.mean(grid.bounds[4:]))
-    slab = grid.extract_cells(np.flatnonzero(np.abs(heights - middle) < _SLAB))
+    slab = grid.extract_cells(np.flatnonzero(np.abs(heights - _cut_height(grid)) < _SLAB))
     slab.points = slab.points * [1.0, _STRETCH, 1.0]
     stage = Stage((2400, 900))
     for kind, color in _CELL_COLORS.items():
@@ -299,9 +312,20 @@ def _cut(grid: pv.UnstructuredGrid) -> AnyArray:
     return stage.picture(_FROM_CUT)
 
 
+def _cut_height(grid: pv.UnstructuredGrid) -> float:
+    """Place of the cut along the span [m]: the middle, but that of a film which ends before it."""
+    middle = float(np.mean(grid.bounds[4:]))
+    film = region(grid, "film")
+    if not film.n_cells or film.bounds[4] < middle - _SLAB < middle + _SLAB < film.bounds[5]:
+        return middle
+    return float(np.mean(film.bounds[4:]))
+
+
 def _cut_title(grid: pv.UnstructuredGrid) -> str:
+    low, high = grid.bounds[4:]
+    share = 100.0 * (_cut_height(grid) - low) / (high - low)
     film = "; hexahedra of the film orange, pyramids blue" if region(grid, "film").n_cells else ""
-    return f"Cells at mid-span, thickness drawn {_STRETCH:g} times{film}"
+    return f"Cells at {share:.0f} % span, thickness drawn {_STRETCH:g} times{film}"
 
 
 def _planform_title(grid: pv.UnstructuredGrid) -> str:

@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterator, Sequence
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator
 
 from quietblade.results.model import Result, StaticResult, state
 from quietblade.results.quantities import LABELS
@@ -91,6 +92,7 @@ def draw_cavitation(result: Result) -> Figure:
         linestyle=(0, (1, 1)), label=r"$\sigma$, coupled",
     )  # fmt: skip
     axes.set_yscale("log")
+    axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
     axes.yaxis.set_major_formatter("{x:g}")
     axes.yaxis.set_minor_formatter("")
     axes.legend(loc="best")
