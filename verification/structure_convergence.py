@@ -237,7 +237,7 @@ def patch_errors(mesh: Mesh, law: MooneyRivlin, gradient: FloatArray) -> PatchEr
     exact = (structure.basis.points - middle) @ (gradient - np.eye(3)).T
     moved = structure.basis.to_dofs(exact)
     noise = np.random.default_rng(3).standard_normal(len(moved))
-    noise *= 1e-3 * np.abs(exact[nodes]).max() * forms.free[: len(moved)]
+    noise *= 3e-4 * np.abs(exact[nodes]).max() * forms.free[: len(moved)]
     start = StructureState(moved + noise, rest.film_pressure, rest.loading)
     state = structure.solve(np.zeros(len(exact)), start, tolerance=1e-11)
     off = np.abs(structure.values(state) - exact)[nodes].max() / np.abs(exact[nodes]).max()

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Friction, singing and the figures of the rotor."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -25,7 +27,7 @@ from quietblade.flow import (
     strip_loads,
     viscous_loads,
 )
-from quietblade.flow.performance import DEFINITIONS
+from quietblade.flow.performance import DEFINITIONS, ideal_efficiency, ideal_notices
 from quietblade.flow.singing import displacement_thickness
 from tests.flow.shapes import OMEGA, V, fin, naca
 from tests.flow.test_momentum import N, propeller
@@ -133,6 +135,24 @@ def test_figures_follow_their_definitions() -> None:
     assert 0.5 < p.efficiency < 1.0
     assert [row[0] for row in p.table()] == [symbol for symbol, _, _ in DEFINITIONS.values()]
     assert "T V_A / (Q omega)" in str(p)
+
+
+def test_no_rotor_is_better_than_the_actuator_disk() -> None:
+    inflow = MomentumInflow(0.7 * N, TURNING, density=1025.0, blades=4)
+    p = performance(strip_loads(propeller(11), inflow), inflow)
+    ideal = ideal_efficiency(p, 1025.0)
+    # the disk: eta = 1 / (1 + a) where T = 2 rho A V^2 a (1 + a)
+    a = 1.0 / ideal - 1.0
+    disk = 0.25 * np.pi * p.diameter**2
+    assert 2.0 * 1025.0 * disk * p.advance_speed**2 * a * (1.0 + a) == pytest.approx(p.thrust)
+    assert p.efficiency < ideal
+    assert not list(ideal_notices(p, inflow, 1025.0))
+    better = replace(p, efficiency=1.01 * ideal)
+    (notice,) = ideal_notices(better, inflow, 1025.0)
+    assert notice.limit == ideal
+    # blade elements induce nothing: 1 is theirs by construction
+    assert not list(ideal_notices(better, StripInflow(V, OMEGA), 1025.0))
+    assert np.isnan(ideal_efficiency(replace(p, thrust=-1.0), 1025.0))
 
 
 def test_advance_speed_behind_a_ship_is_the_mean_inflow() -> None:

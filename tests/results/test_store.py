@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """The folder of a run: whole files or none."""
 
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -24,6 +25,20 @@ def test_save_and_load(tmp_path: Path) -> None:
     assert sorted(p.name for p in folder.root.iterdir()) == [
         "case.toml", "result.nc", "summary.txt",
     ]  # fmt: skip
+
+
+def test_a_later_run_that_has_not_finished_is_known(tmp_path: Path) -> None:
+    folder = RunFolder(tmp_path)
+    assert not folder.overtaken()
+    stage = folder.stages / "mesh.json"
+    write_text(stage, "{}")
+    assert not folder.overtaken()
+    folder.save(make_result())
+    made = folder.result.stat().st_mtime
+    os.utime(stage, (made - 1.0, made - 1.0))
+    assert not folder.overtaken()
+    os.utime(stage, (made + 1.0, made + 1.0))
+    assert folder.overtaken()
 
 
 def test_a_failure_leaves_the_old_file_and_nothing_else(tmp_path: Path) -> None:

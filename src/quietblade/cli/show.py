@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from quietblade.cli.common import ExitCode, show_json
+from quietblade.cli.common import ExitCode, error_console, show_json
 from quietblade.cli.tables import show_tables
 
 
@@ -25,7 +25,12 @@ def show(
     from quietblade.results.store import RunFolder  # noqa: PLC0415
     from quietblade.results.tables import summary_tables  # noqa: PLC0415
 
-    summary = summarise(RunFolder(directory).load())
+    folder = RunFolder(directory)
+    summary = summarise(folder.load())
+    if folder.overtaken():
+        error_console.print(
+            f"{directory}: a later run has not finished; these are the figures of the one before"
+        )
     if as_json:
         show_json(summary.model_dump(mode="json"))
     else:

@@ -10,10 +10,11 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import ArrayLike
 
+from quietblade.errors import Notice
 from quietblade.flow.cavitation import cavitation_number, inception_depth, suction
 from quietblade.flow.environment import Environment
 from quietblade.flow.friction import ViscousLoads, section_drag, viscous_loads
-from quietblade.flow.inflow import BladeFlow, Stream, radii
+from quietblade.flow.inflow import BladeFlow, Inflow, Stream, radii
 from quietblade.flow.loads import SectionLoads, integrate, span_integral
 from quietblade.flow.panel import PanelSections
 from quietblade.flow.sections import AXIS, DeformedSections, section_frames
@@ -121,6 +122,48 @@ def performance(
         torque_coefficient=_ratio(z * torque * sense, density * turns**2 * diameter**5),
         efficiency=_ratio(thrust * advance, power),
     )
+
+
+def ideal_efficiency(figures: Performance, density: float) -> float:
+    """Efficiency that no rotor of this thrust, diameter and speed exceeds, friction apart.
+
+    ``2 / (1 + sqrt(1 + C_T))`` with ``C_T = T / (rho V_A^2 pi D^2 / 8)``, of Rankine's and
+    Froude's actuator disk (momentum theory, no swirl); nan without thrust or speed.
+
+    Parameters
+    ----------
+    figures : Performance
+    density : float
+        Of the water [kg/m^3].
+    """
+    if figures.thrust <= 0.0 or figures.advance_speed <= 0.0:
+        return float("nan")
+    pressure = density * figures.advance_speed**2 * np.pi * figures.diameter**2 / 8.0
+    return float(2.0 / (1.0 + np.sqrt(1.0 + figures.thrust / pressure)))
+
+
+def ideal_notices(figures: Performance, inflow: Inflow, density: float) -> Iterator[Notice]:
+    """Notice a rotor that is better than the actuator disk, by a model that induces velocities.
+
+    Parameters
+    ----------
+    figures : Performance
+        Without friction.
+    inflow : Inflow
+        Blade elements in the undisturbed stream induce nothing and are not judged.
+    density : float
+        Of the water [kg/m^3].
+    """
+    ideal = ideal_efficiency(figures, density)
+    if inflow.name != "none" and figures.efficiency > ideal:
+        yield Notice(
+            "flow.inflow",
+            "the efficiency without friction is above that of the actuator disk, which no rotor "
+            "exceeds: thrust and torque of this model are too favourable here",
+            figures.efficiency,
+            ideal,
+            'Compare with another model: inflow = "momentum" for a rotor with several blades',
+        )
 
 
 @dataclass(frozen=True, eq=False)

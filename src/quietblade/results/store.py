@@ -85,6 +85,13 @@ class RunFolder:
         for place in (self.root, self.figures, self.static_fields.parent):
             remove_leftovers(place)
 
+    def overtaken(self) -> bool:
+        """Whether a later run has been at work in the folder and has not finished."""
+        if not self.result.is_file():
+            return False
+        made = self.result.stat().st_mtime
+        return any(file.stat().st_mtime > made for file in self.stages.glob("*.json"))
+
     def load(self) -> Result:
         """Read the result.
 

@@ -10,6 +10,7 @@ from quietblade.card import Card, Shown
 from quietblade.case import Case
 from quietblade.errors import Notice
 from quietblade.flow import limits
+from quietblade.flow.performance import ideal_notices, performance
 from quietblade.geometry import Blade
 from quietblade.linalg import SolverReport, SparseSolver
 from quietblade.mesh import Mesh
@@ -96,6 +97,8 @@ class Statics(Shown):
         flow = self.state.coupled.sections, self.state.coupled.loads
         yield from translate.inflow(case).notices(*flow)
         yield from limits.notices(*flow, translate.environment(case))
+        figures = performance(self.state.coupled, translate.inflow(case))
+        yield from ideal_notices(figures, translate.inflow(case), case.water.density)
         yield from viscous_notices(case, self.viscous[-1])
         correction = self.state.surface.correction
         if correction > POOR_TRANSFER:
