@@ -301,7 +301,11 @@ def _surface_mesh(grid: pv.UnstructuredGrid) -> AnyArray:
 def _cut(grid: pv.UnstructuredGrid) -> AnyArray:
     """Cells of a slice, so that the layers are seen from its end."""
     heights = grid.cell_centers().points[:, 2]
-    slab = grid.extract_cells(np.flatnonzero(np.abs(heights - _cut_height(grid)) < _SLAB))
+    inside = np.abs(heights - _cut_height(grid)) < _SLAB
+    pyramids = inside & (grid.celltypes == CELL_TYPES["pyramid13"])
+    if pyramids.any():  # the tetrahedra before them would hide them all
+        inside &= (heights <= heights[pyramids].max()) | (grid.celltypes != CELL_TYPES["tetra10"])
+    slab = grid.extract_cells(np.flatnonzero(inside))
     slab.points = slab.points * [1.0, _STRETCH, 1.0]
     stage = Stage((2400, 900))
     for kind, color in _CELL_COLORS.items():
