@@ -14,7 +14,9 @@ from quietblade.cli.main import execute
 from quietblade.cli.progress import ProgressDisplay
 from quietblade.results.lock import locked
 from quietblade.results.store import RunFolder
+from quietblade.study.keeping import Lap, StageStore
 from quietblade.study.run import run_key
+from quietblade.study.stages import origins
 from tests.results.synthetic import make_result
 
 
@@ -41,6 +43,19 @@ def test_result_that_is_there_is_not_computed_again(
     said = capsys.readouterr().out
     assert "--force" in said
     assert "Lift" in said
+    assert "other code" not in said
+
+
+def test_result_of_other_code_is_told(
+    case: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = RunFolder(tmp_path / "run")
+    stored(case, folder.root, converged=True)
+    mesh = origins(Case.load(case))["mesh"]
+    changed = replace(mesh, code={**mesh.code, "quietblade": "of last year"})
+    StageStore(folder.stages).keep("mesh", changed, Lap(1.0, 1e6), "a mesh", {})
+    assert execute(["run", "--brief", str(case), "--out", str(folder.root)]) == 0
+    assert "by other code than is installed" in " ".join(capsys.readouterr().out.split())
 
 
 def test_kept_result_that_did_not_converge_has_its_own_exit_code(

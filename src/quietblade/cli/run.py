@@ -50,7 +50,7 @@ def run(
     from quietblade.results.headline import summarise  # noqa: PLC0415
     from quietblade.results.store import RunFolder  # noqa: PLC0415
     from quietblade.results.tables import summary_tables  # noqa: PLC0415
-    from quietblade.study.run import finished, run_case  # noqa: PLC0415
+    from quietblade.study.run import by_other_code, finished, run_case  # noqa: PLC0415
     from quietblade.view.figures import draw_figures  # noqa: PLC0415
 
     words = load_case(case)
@@ -58,7 +58,10 @@ def run(
     teller = error_console if as_json else console
     if not force and (result := finished(words, folder)) is not None:
         if not quiet:
-            teller.print(f"{folder.root} holds the result of this very case; --force computes it")
+            older = ", by other code than is installed" if by_other_code(words, folder) else ""
+            teller.print(
+                f"{folder.root} holds the result of this very case{older}; --force computes it"
+            )
     else:
         try:
             with ProgressDisplay(teller, quiet=quiet, verbose=verbose) as progress:

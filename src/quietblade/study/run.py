@@ -36,7 +36,7 @@ from quietblade.study.log import logging_to
 from quietblade.study.mode_tables import mode_tables
 from quietblade.study.preflight import Preflight, preflight
 from quietblade.study.sound import solve_sound
-from quietblade.study.stages import origins
+from quietblade.study.stages import code_version, origins
 from quietblade.study.statics import Statics, build_structure, solve_statics
 from quietblade.study.vibration import frequencies
 from quietblade.typing import Progress, silent
@@ -54,6 +54,16 @@ def finished(case: AnyCase, folder: RunFolder) -> Result | None:
     except ResultError:
         return None
     return result if result.run.content_key == run_key(case) else None
+
+
+def by_other_code(case: AnyCase, folder: RunFolder) -> bool:
+    """Whether a stage that the folder keeps was computed by another source or other packages.
+
+    The key of a result has the version of quietblade only; that of a stage has all of it.
+    """
+    store = StageStore(folder.stages)
+    kept = (store.known(stage) for stage in origins(case))
+    return any(known is not None and known.origin.code != code_version() for known in kept)
 
 
 def run_case(
