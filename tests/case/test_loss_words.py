@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from quietblade.case import Case, InvalidCaseError
@@ -188,6 +188,8 @@ VALUES = st.one_of(
 
 @settings(max_examples=60, deadline=None)
 @given(place=st.sampled_from(PLACES), value=VALUES)
+@example(place=("prestrain", 0, "loss_factor", "file"), value="9" * 400)
+@example(place=("prestrain", 0, "loss_factor", "file"), value="\x00")
 def test_whatever_stands_in_a_model_it_is_a_case_or_messages(place, value) -> None:
     loss: Any = json.loads(json.dumps(WHOLE))
     table = loss

@@ -4,6 +4,7 @@
 import copy
 import hashlib
 import json
+from abc import abstractmethod
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from os import PathLike
@@ -205,22 +206,19 @@ class AnyCase(Shown, Words):
         for part in self.parts:
             del plain[part]["material"]
             plain["materials"][part] = self._physics_of(self.material(part))
-        plain["files"] = {
-            key: hashlib.sha256(file.read_bytes()).hexdigest() if file.is_file() else ""
-            for key, file in self.files.items()
-        }
+        plain["files"] = {key: _digest(file) for key, file in self.files.items()}
         rounded: dict[str, Any] = _rounded(plain)
         return rounded
 
     @property
+    @abstractmethod
     def parts(self) -> tuple[str, ...]:
         """Parts that have a material: solid regions of the mesh, and tables of the case."""
-        raise NotImplementedError
 
     @property
+    @abstractmethod
     def middle(self) -> tuple[float, float, float]:
         """Centre of the water sphere if the case gives none, x, y, z [m]."""
-        raise NotImplementedError
 
     def material_name(self, part: str) -> str:
         """Name of the material of a part.
@@ -318,6 +316,14 @@ class AnyCase(Shown, Words):
     def _together(self) -> Iterator[Finding]:
         """Refuse what a material or a file makes wrong, though each table is right."""
         return iter(())
+
+
+def _digest(file: FilePath) -> str:
+    """Hash of a file's content; empty if it cannot be read, which is told where it is used."""
+    try:
+        return hashlib.sha256(file.read_bytes()).hexdigest()
+    except (OSError, ValueError):  # ValueError: no name of a file at all
+        return ""
 
 
 def _rounded(value: Any) -> Any:
