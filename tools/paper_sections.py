@@ -124,11 +124,11 @@ def _misses(
 ) -> Iterator[str]:
     """Claims that no variant meets, and how near the other choices come to them."""
     missed = [
-        f"{blade}: {claim.statement} (paper: {claim.paper}; here: {claim.computed}{tried})"
+        f"{blade}: {claim.statement} (paper: {claim.paper}; here: {claim.computed}"
+        f"{_tried(closest.get(key))})"
         for blade in BLADES
         for key, claim in judged[blade, shown[0]].items()
         if all(judged[blade, v].get(key, claim).agrees is False for v in shown)
-        for tried in [_tried(*closest[key]) if key in closest else ""]
     ]
     if not missed:
         yield "Every claim agrees in one of the variants at least.\n"
@@ -140,7 +140,10 @@ def _misses(
         yield "meshes ([which moves what](#which-open-choice-moves-which-claim)).\n"
 
 
-def _tried(value: str, met: str) -> str:
+def _tried(closest: tuple[str, str] | None) -> str:
+    if closest is None:
+        return ""
+    value, met = closest
     count, _, of = met.partition(" of ")
     return f"; closest of {of} other runs: {value}, {'none' if count == '0' else count} met it"
 

@@ -4,10 +4,8 @@ import pytest
 
 from quietblade.mesh import Mesh
 from quietblade.mesh.motion import solve_mesh_motion
-from quietblade.mesh.quality import jacobian_derivatives, tetrahedron_jacobians
+from quietblade.mesh.quality import TETRA_EDGES, jacobian_derivatives, tetrahedron_jacobians
 from quietblade.mesh.relax import relax_cells
-
-EDGES = ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))
 
 
 @pytest.fixture
@@ -30,7 +28,7 @@ def test_a_corner_pulled_through_its_cells_comes_back(
     around = (water[:, :4] == corner).any(axis=1)
     nodes = coarse_mesh.nodes.copy()
     nodes[corner, 0] += 1.5 * np.cbrt(before[around].max())
-    for k, (a, b) in enumerate(EDGES):
+    for k, (a, b) in enumerate(TETRA_EDGES):
         touched = water[(water[:, a] == corner) | (water[:, b] == corner)]
         nodes[touched[:, 4 + k]] = 0.5 * (nodes[touched[:, a]] + nodes[touched[:, b]])
     assert tetrahedron_jacobians(nodes, water).min() < 0.0

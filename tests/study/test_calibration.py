@@ -16,7 +16,7 @@ from quietblade.errors import ConvergenceError, QuietbladeError
 from quietblade.results.model import Result
 from quietblade.results.store import RunFolder
 from quietblade.study.calibration import calibrate, case_figures, stored_evaluations
-from quietblade.study.fitting import closest, write_fitted, write_sensitivities
+from quietblade.study.fitting import write_closest, write_fitted, write_sensitivities
 from quietblade.study.run import run_key
 from quietblade.study.sensitivity import sensitivities
 from quietblade.typing import Progress, silent
@@ -173,7 +173,7 @@ def test_closest_run_to_each_claim_is_named(file: Path) -> None:
     file.write_text(f"{FILE}\n[search]\nevaluations = 2\n")
     words, root = Calibration.load(file), file.parent / "out"
     calibrate(words, root, runner=Made(saves=True))
-    rows = {row[0]: row for row in closest(root).rows}
+    rows = {row[0]: row for row in write_closest(root).rows}
     met, of = rows["paper/composite/film-shear-strain"][3].split(" of ")
     assert 0 < int(met) <= int(of)
     assert rows["paper/composite/film-shear-strain"][4].startswith("evaluations/")

@@ -52,7 +52,7 @@ def check(
 
 
 def _migrate(path: Path) -> None:
-    from quietblade.case import parse_case  # noqa: PLC0415
+    from quietblade.case import parse_case  # noqa: PLC0415  # help must stay fast
     from quietblade.case.source import read_source  # noqa: PLC0415
     from quietblade.case.versions import migrated_text  # noqa: PLC0415
 

@@ -48,7 +48,7 @@ def cite(
 
 def _case(what: Path) -> "tuple[AnyCase, str]":
     """Case of a run, or of a file, and the version that computed it."""
-    from quietblade.case import load_case, parse_case  # noqa: PLC0415
+    from quietblade.case import load_case, parse_case  # noqa: PLC0415  # help must stay fast
 
     if what.is_file():
         return load_case(what), __version__

@@ -68,7 +68,7 @@ def report(
 
 def case_words(file: Path, run: "RunRecord") -> "tuple[tuple[Table, ...], tuple[Table, ...]]":
     """Say a run's case in words, as ``check`` does, or why that cannot be; and what to cite."""
-    from quietblade.case import InvalidCaseError, load_case  # noqa: PLC0415
+    from quietblade.case import InvalidCaseError, load_case  # noqa: PLC0415  # help must stay fast
     from quietblade.case.changes import read_changes  # noqa: PLC0415
     from quietblade.cli.describe import case_tables  # noqa: PLC0415
     from quietblade.results.table import Table  # noqa: PLC0415

@@ -10,6 +10,9 @@ from quietblade.errors import InvertedCellError, Notice
 from quietblade.mesh.model import Quality
 from quietblade.typing import FloatArray, IntArray
 
+TETRA_EDGES = ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))
+"""Corners of the mid-edge nodes 4 to 9 of a second-order tetrahedron, VTK node order."""
+
 POOR_SHAPE = 1e-3
 """Signed inverse condition number below which a notice is given."""
 
@@ -121,9 +124,10 @@ def _tangents(nodes: FloatArray, connectivity: IntArray) -> FloatArray:
 def _tetra10_derivatives(barycentric: FloatArray) -> FloatArray:
     """Differentiate the ten shape functions along the three local axes, (10, 3)."""
     gradients = np.array([[-1.0, -1, -1], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
-    edges = ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))
     corner = [(4 * lam - 1) * g for lam, g in zip(barycentric, gradients, strict=True)]
-    middle = [4 * (barycentric[i] * gradients[j] + barycentric[j] * gradients[i]) for i, j in edges]
+    middle = [
+        4 * (barycentric[i] * gradients[j] + barycentric[j] * gradients[i]) for i, j in TETRA_EDGES
+    ]
     return np.array(corner + middle)
 
 

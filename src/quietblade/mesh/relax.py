@@ -5,11 +5,8 @@ import numpy as np
 from scipy.optimize import minimize
 from scipy.special import logsumexp, softmax
 
-from quietblade.mesh.quality import jacobian_derivatives, tetrahedron_jacobians
+from quietblade.mesh.quality import TETRA_EDGES, jacobian_derivatives, tetrahedron_jacobians
 from quietblade.typing import BoolArray, FloatArray, IntArray
-
-_EDGES = ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))
-"""Corners of the mid-edge nodes 4 to 9 of a second-order tetrahedron, VTK node order."""
 
 _SHARPNESS = 10.0  # of the soft minimum: a cell of half its volume counts e^5 times a whole one
 _ROUNDS = 3
@@ -92,7 +89,7 @@ def _relaxed(
 
 def _free_edges(cells: IntArray, held: BoolArray) -> tuple[IntArray, IntArray, IntArray]:
     """Mid-edge nodes that are not held, each once, and the two corners of each."""
-    edges = np.concatenate([cells[:, [4 + k, a, b]] for k, (a, b) in enumerate(_EDGES)])
+    edges = np.concatenate([cells[:, [4 + k, a, b]] for k, (a, b) in enumerate(TETRA_EDGES)])
     _, once = np.unique(edges[:, 0], return_index=True)
     middle, first, second = edges[once[~held[edges[once, 0]]]].T
     return middle, first, second

@@ -14,12 +14,11 @@ from quietblade.errors import MeshError
 from quietblade.mesh.build import gmsh_session, set_growth
 from quietblade.mesh.model import CellBlock, Mesh, Quality
 from quietblade.mesh.motion import MeshMotion, solve_mesh_motion
-from quietblade.mesh.quality import tetrahedron_jacobians
+from quietblade.mesh.quality import TETRA_EDGES, tetrahedron_jacobians
 from quietblade.typing import FloatArray, IntArray
 
 _TETRA4 = 4
 _TRIANGLE3 = 2
-_TETRA_EDGES = ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))
 _TRIANGLE_EDGES = ((0, 1), (1, 2), (2, 0))
 
 
@@ -135,7 +134,7 @@ def _second_order(
     nodes: FloatArray, tetrahedra: IntArray, triangles: IntArray
 ) -> tuple[FloatArray, IntArray]:
     """Mid-edge nodes: those of the given triangles on the surfaces, new ones elsewhere."""
-    edges = np.sort(tetrahedra[:, _TETRA_EDGES], axis=2)
+    edges = np.sort(tetrahedra[:, TETRA_EDGES], axis=2)
     unique, place = np.unique(edges.reshape(-1, 2), axis=0, return_inverse=True)
     known = np.sort(triangles[:, _TRIANGLE_EDGES], axis=2).reshape(-1, 2)
     key = unique[:, 0] * len(nodes) + unique[:, 1]

@@ -24,33 +24,30 @@ from quietblade.study.vibration import (
     Share,
     SolidMatrices,
     Vibration,
+    assemble,
     find_modes,
 )
 from quietblade.typing import Progress
 from quietblade.vibroacoustics.fluid import normal_motion_matrix
 from quietblade.vibroacoustics.modes import WetModes
 from quietblade.vibroacoustics.multipoles import CLOSED_SURFACE, SurfaceSources
-from quietblade.vibroacoustics.operators import CLAMPED, Operators, build_operators
+from quietblade.vibroacoustics.operators import CLAMPED, Operators
 from quietblade.vibroacoustics.root import RootedSystem, add_root
 
 
 def linear_problem(
     case: Case, mesh: Mesh, solid: SolidMatrices, field: ngs.GridFunction | None
 ) -> Operators:
-    """Assemble eq. (7) with the structure's matrices, on the mesh that is moved to its state."""
+    """Assemble eq. (7) of a blade with its root clamped, or free to move on springs."""
     on_springs = case.root.support == "elastic"  # then the root face moves in the water too
     with ngs.TaskManager():
-        return build_operators(
-            mesh.fem,
-            stiffness=solid.stiffness,
-            loss=solid.loss,
-            mass=solid.tangent.mass,
-            water=translate.water(case),
-            radius=mesh.radius,
-            motion=field,
+        return assemble(
+            case,
+            mesh,
+            solid,
+            field,
             clamped=None if on_springs else CLAMPED,
             wetted=f"{INTERFACE}|{CLAMPED}" if on_springs else INTERFACE,
-            condition=translate.radiation(case, mesh, field),
         )
 
 

@@ -19,13 +19,13 @@ from quietblade.study.excitations import Drive, Excited, constant_amplitude, pat
 from quietblade.study.frames import SphereFrames
 from quietblade.study.solids import isotropic
 from quietblade.study.spectra import names, spectra
-from quietblade.study.vibration import LinearProblem, SolidMatrices, Vibration, find_modes
+from quietblade.study.vibration import LinearProblem, SolidMatrices, Vibration, assemble, find_modes
 from quietblade.typing import FloatArray, Progress
 from quietblade.vibroacoustics.excitation import pressure_force
 from quietblade.vibroacoustics.fluid import normal_motion_matrix
 from quietblade.vibroacoustics.loads import Excitation, Spectrum
 from quietblade.vibroacoustics.multipoles import SurfaceSources
-from quietblade.vibroacoustics.operators import Operators, build_operators
+from quietblade.vibroacoustics.operators import Operators
 from quietblade.vibroacoustics.point_loads import point_force
 
 
@@ -68,16 +68,7 @@ def solve_body(case: BodyCase, mesh: Mesh, progress: Progress) -> Vibration:
     structure = build_body(case, mesh)
     solid = SolidMatrices.of(case, structure, structure.rest())
     with ngs.TaskManager():
-        operators = build_operators(
-            mesh.fem,
-            stiffness=solid.stiffness,
-            loss=solid.loss,
-            mass=solid.tangent.mass,
-            water=translate.water(case),
-            radius=mesh.radius,
-            clamped=None,
-            condition=translate.radiation(case, mesh, None),
-        )
+        operators = assemble(case, mesh, solid, clamped=None)
         problem = LinearProblem(
             name="C0",
             operators=operators,

@@ -14,9 +14,8 @@ from quietblade.study.limits import far_field_findings, limit_notices, limits
 from quietblade.study.losses import moduli, moduli_notices
 from quietblade.study.preflight import (
     Surroundings,
-    mesh_notices,
     plate_wavelength,
-    radiation_notices,
+    surroundings,
     too_fine,
     unused_notices,
     water_size_findings,
@@ -52,7 +51,7 @@ def body_preflight(case: BodyCase) -> BodyPreflight:
     spectra(case)
     held = limits(case)
     complex_moduli = moduli(case)
-    body, high = case.body, case.acoustics.band[1]
+    body = case.body
     centre, radius = translate.sphere(case)
     clearance = radius - float(np.linalg.norm(centre)) - body.radius
     area = 4.0 * np.pi * body.radius**2
@@ -67,38 +66,26 @@ def body_preflight(case: BodyCase) -> BodyPreflight:
     words = case.material("body")
     assert isinstance(words, IsotropicWords)  # the case has no other law for a body
     volume = 4.0 / 3.0 * np.pi * (body.radius**3 - (body.radius - body.thickness) ** 3)
-    kr = 2.0 * np.pi * np.array(case.acoustics.band) / case.water.sound_speed * radius
-    acoustic = case.water.sound_speed / high
     bending = plate_wavelength(
         rigidity=words.E * body.thickness**3 / 12.0 / (1.0 - words.nu**2),
         mass=words.density * body.thickness,
         water=case.water.density,  # on one side
-        frequency=high,
+        frequency=case.acoustics.band[1],
     )
-    per_acoustic = acoustic / translate.water_size(case)
-    per_bending = bending / case.mesh.size
-    return BodyPreflight(
-        centre=centre,
-        radius=radius,
+    known = surroundings(
+        case,
         clearance=clearance,
-        kr=kr,
-        acoustic_wavelength=acoustic,
-        bending_wavelength=bending,
-        elements_per_acoustic_wavelength=per_acoustic,
-        elements_per_bending_wavelength=per_bending,
-        surface_elements=faces,
+        bending=bending,
+        faces=faces,
         moduli=complex_moduli,
         notices=(
-            *radiation_notices(case, float(kr[0])),
-            *mesh_notices(case, per_bending, per_acoustic),
             *_thin_notices(case),
             *unused_notices(case),
             *limit_notices(case, held),
             *moduli_notices(case, complex_moduli),
         ),
-        volume=volume,
-        mass=volume * words.density,
     )
+    return BodyPreflight(**vars(known), volume=volume, mass=volume * words.density)
 
 
 def sphere_points(radius: float, apart: float) -> FloatArray:

@@ -21,17 +21,8 @@ from quietblade.study.sensitivity import Sensitivities
 _AT_BOUND = 0.01  # share of the bounds
 
 
-def fitted_tables(words: Calibration, found: Fitted, root: Path) -> tuple[Table, ...]:
-    """Tables of a search: parameters, targets, and the closest run to each claim."""
-    tables = (_parameters(words, found), _targets(words, found), closest(root))
-    return tuple(table for table in tables if table.rows)
-
-
-def closest(root: Path) -> Table:
-    """Closest run to each claim of the paper, of all runs below a calibration's folder.
-
-    The table is also written there, as ``closest.csv``.
-    """
+def write_closest(root: Path) -> Table:
+    """Write ``closest.csv``: the closest run to each claim, of all runs below the folder."""
     table = closest_table(closest_runs(_runs(root)))
     if table.rows:
         write_text(root / "closest.csv", as_csv(table.columns, table.rows))
@@ -82,7 +73,8 @@ def _targets(words: Calibration, found: Fitted) -> Table:
 
 def write_fitted(words: Calibration, found: Fitted, root: Path) -> tuple[Table, ...]:
     """Write ``calibration.json``, ``.txt`` (with the reading) and ``closest.csv``."""
-    tables = fitted_tables(words, found, root)
+    made = (_parameters(words, found), _targets(words, found), write_closest(root))
+    tables = tuple(table for table in made if table.rows)
     stem = f"calibration-{found.reading}" if found.reading else "calibration"
     data: dict[str, Any] = {
         "reading": found.reading,
@@ -104,7 +96,7 @@ def write_sensitivities(words: Calibration, found: Sensitivities, root: Path) ->
     """Write ``sensitivities.csv`` and ``.txt``, and ``closest.csv``."""
     names = tuple(target.figure for target in words.targets)
     claims = any(name.startswith("paper/") for _, name in found.names())
-    moved = (found.table() if claims else found.table(names), closest(root))
+    moved = (found.table() if claims else found.table(names), write_closest(root))
     tables = tuple(table for table in moved if table.rows)
     write_text(root / "sensitivities.csv", found.to_csv())
     write_text(root / "sensitivities.txt", as_text(words.title or "Sensitivities", tables))

@@ -106,33 +106,71 @@ def preflight(case: Case) -> Preflight:
     ]
     if findings:
         raise case.invalid(*findings)
-    kr = 2.0 * np.pi * np.array(case.acoustics.band) / case.water.sound_speed * radius
-    acoustic = case.water.sound_speed / case.acoustics.band[1]
-    bending = bending_wavelength(case, blade, case.acoustics.band[1])
-    per_acoustic = acoustic / translate.water_size(case)
-    per_bending = bending / case.mesh.size
     ends = np.array([0.0, 1.0])
     swirl = case.flow.rotation * blade.radius(ends)
+    known = surroundings(
+        case,
+        clearance=clearance,
+        bending=bending_wavelength(case, blade, case.acoustics.band[1]),
+        faces=faces,
+        moduli=complex_moduli,
+        notices=(
+            *_material_notices(case),
+            *limit_notices(case, held),
+            *moduli_notices(case, complex_moduli),
+        ),
+    )
     return Preflight(
+        **vars(known),
         blade=blade,
+        incidence=np.arctan2(swirl, case.flow.speed) + blade.blade_angle(ends),
+        film_cover=_film_cover(blade),
+    )
+
+
+def surroundings(
+    case: AnyCase,
+    *,
+    clearance: float,
+    bending: float,
+    faces: int,
+    moduli: tuple[Modulus, ...],
+    notices: tuple[Notice, ...],
+) -> Surroundings:
+    """Put together what the water makes of a body; notices of waves come before the given ones.
+
+    Parameters
+    ----------
+    case : AnyCase
+    clearance : float
+        Least distance of the body at rest from the sphere [m].
+    bending : float
+        Bending wavelength at the top of the band [m].
+    faces : int
+        Triangles on the body.
+    moduli : tuple of Modulus
+    notices : tuple of Notice
+    """
+    centre, radius = translate.sphere(case)
+    kr = 2.0 * np.pi * np.array(case.acoustics.band) / case.water.sound_speed * radius
+    acoustic = case.water.sound_speed / case.acoustics.band[1]
+    per_acoustic = acoustic / translate.water_size(case)
+    per_bending = bending / case.mesh.size
+    return Surroundings(
         centre=centre,
         radius=radius,
         clearance=clearance,
-        incidence=np.arctan2(swirl, case.flow.speed) + blade.blade_angle(ends),
-        film_cover=_film_cover(blade),
         kr=kr,
         acoustic_wavelength=acoustic,
         bending_wavelength=bending,
         elements_per_acoustic_wavelength=per_acoustic,
         elements_per_bending_wavelength=per_bending,
         surface_elements=faces,
-        moduli=complex_moduli,
+        moduli=moduli,
         notices=(
-            *radiation_notices(case, float(kr[0])),
-            *mesh_notices(case, per_bending, per_acoustic),
-            *_material_notices(case),
-            *limit_notices(case, held),
-            *moduli_notices(case, complex_moduli),
+            *_radiation_notices(case, float(kr[0])),
+            *_mesh_notices(case, per_bending, per_acoustic),
+            *notices,
         ),
     )
 
@@ -281,7 +319,7 @@ def _film_cover(blade: Blade) -> float | None:
     return float(np.min(blade.film_cover(s, xi)))
 
 
-def radiation_notices(case: AnyCase, kr: float) -> Iterator[Notice]:
+def _radiation_notices(case: AnyCase, kr: float) -> Iterator[Notice]:
     """Say where an approximate condition is not exact enough."""
     if kr < _LEAST_KR and case.acoustics.radiation != "dtn":
         yield Notice(
@@ -294,7 +332,7 @@ def radiation_notices(case: AnyCase, kr: float) -> Iterator[Notice]:
         )
 
 
-def mesh_notices(case: AnyCase, per_bending: float, per_acoustic: float) -> Iterator[Notice]:
+def _mesh_notices(case: AnyCase, per_bending: float, per_acoustic: float) -> Iterator[Notice]:
     """Say where cells are too few for a wavelength."""
     for key, count, wave in (
         ("mesh.size", per_bending, "bending wavelength"),

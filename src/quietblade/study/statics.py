@@ -95,10 +95,11 @@ class Statics(Shown):
         yield from self.state.notices
         yield from self._stress_notices()
         flow = self.state.coupled.sections, self.state.coupled.loads
-        yield from translate.inflow(case).notices(*flow)
+        inflow = translate.inflow(case)
+        yield from inflow.notices(*flow)
         yield from limits.notices(*flow, translate.environment(case))
-        figures = performance(self.state.coupled, translate.inflow(case))
-        yield from ideal_notices(figures, translate.inflow(case), case.water.density)
+        figures = performance(self.state.coupled, inflow)
+        yield from ideal_notices(figures, inflow, case.water.density)
         yield from viscous_notices(case, self.viscous[-1])
         correction = self.state.surface.correction
         if correction > POOR_TRANSFER:

@@ -13,6 +13,7 @@ from quietblade.case import AnyCase
 from quietblade.errors import Notice
 from quietblade.linalg import Precision, SolverChain, SolverReport, make_solver
 from quietblade.mesh import Mesh
+from quietblade.mesh.model import INTERFACE
 from quietblade.propulsion.structure import Structure, StructureState
 from quietblade.propulsion.tangent import STIFFNESS, Tangent, compute_tangent
 from quietblade.study import losses, translate
@@ -25,7 +26,7 @@ from quietblade.vibroacoustics.grid import refined_grid
 from quietblade.vibroacoustics.loss import Lossy
 from quietblade.vibroacoustics.modes import WetModes, wet_modes
 from quietblade.vibroacoustics.multipoles import SurfaceSources
-from quietblade.vibroacoustics.operators import Operators
+from quietblade.vibroacoustics.operators import Operators, build_operators
 from quietblade.vibroacoustics.reduced import ReducedSweep, reduce_system
 from quietblade.vibroacoustics.root import RootedSystem
 
@@ -39,8 +40,8 @@ lie, not what they are: these, and the estimate of their error, come from the ma
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Vibration(Shown):
-    """The linear problem about C0 or C1, and its modes.
+class LinearProblem:
+    """The linear problem about C0 or C1: what its modes and its sound come from.
 
     Attributes
     ----------
@@ -56,10 +57,27 @@ class Vibration(Shown):
         Square of the normal motion of the whole wetted surface, for the radiation efficiency.
     positions : (nodes, 3) float array
         Nodes of the mesh in this configuration [m].
-    modes : WetModes
-        Real modes, also somewhat above the band.
     frames : Frames
         Axes in which modes are named and compared: those of the sections, of a blade.
+    """
+
+    name: str
+    operators: Operators
+    excited: Excited
+    sources: SurfaceSources
+    normal_motion: csr_matrix
+    positions: FloatArray
+    frames: Frames
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Vibration(LinearProblem, Shown):
+    """A linear problem and its modes.
+
+    Attributes
+    ----------
+    modes : WetModes
+        Real modes, also somewhat above the band.
     shapes : (m, named nodes, 3) float array
         Motion of the modes in these axes; of a blade chordwise, normal, along the span.
     masses : (named nodes,) float array
@@ -75,14 +93,7 @@ class Vibration(Shown):
     notices : tuple of Notice
     """
 
-    name: str
-    operators: Operators
-    excited: Excited
-    sources: SurfaceSources
-    normal_motion: csr_matrix
-    positions: FloatArray
     modes: WetModes
-    frames: Frames
     shapes: FloatArray
     masses: FloatArray
     naming: Names
@@ -156,17 +167,28 @@ class SolidMatrices:
         return cls(tangent, tangent.sum(pieces), loss)
 
 
-@dataclass(frozen=True, eq=False)
-class LinearProblem:
-    """What the modes and the sound of a configuration come from; named as in `Vibration`."""
-
-    name: str
-    operators: Operators
-    excited: Excited
-    sources: SurfaceSources
-    normal_motion: csr_matrix
-    positions: FloatArray
-    frames: Frames
+def assemble(
+    case: AnyCase,
+    mesh: Mesh,
+    solid: SolidMatrices,
+    field: ngs.GridFunction | None = None,
+    *,
+    clamped: str | None,
+    wetted: str = INTERFACE,
+) -> Operators:
+    """Assemble eq. (7) with the structure's matrices, on the mesh that is moved to its state."""
+    return build_operators(
+        mesh.fem,
+        stiffness=solid.stiffness,
+        loss=solid.loss,
+        mass=solid.tangent.mass,
+        water=translate.water(case),
+        radius=mesh.radius,
+        motion=field,
+        clamped=clamped,
+        wetted=wetted,
+        condition=translate.radiation(case, mesh, field),
+    )
 
 
 def find_modes(case: AnyCase, mesh: Mesh, problem: LinearProblem, progress: Progress) -> Vibration:
